@@ -1,0 +1,181 @@
+#include "arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "base/error.h"
+#include "values.h"
+
+namespace relook {
+namespace {
+
+constexpr const char* kRecorded = "; recorded, frames never depend on it";
+
+/// Options that need our own syntax, as text until the whole line is read.
+struct RawTexts {
+  std::string resolution, memory, ray_trees, color_trees, verify, lights, progress = "auto";
+};
+
+void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
+  verb.add_option("--threads", arguments.threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
+  verb.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
+  verb.add_flag("--json", arguments.json, "Print results as one JSON object");
+  verb.add_option("--progress", raw.progress, "auto, plain, json or none");
+}
+
+void add_look_patch(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--look", arguments.view.look_patch, "JSON Patch (RFC 6902) applied to the look document first");
+}
+
+void add_lights(CLI::App& verb, RawTexts& raw) {
+  verb.add_option("--lights", raw.lights, "auto: add a key, a fill and a rim light")->check(CLI::IsMember({"auto"}));
+}
+
+void add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
+  ViewArguments& view = arguments.view;
+  verb.add_option("--camera", view.camera, "NAME, auto, or EYE:TARGET:FOV as x,y,z:x,y,z:degrees");
+  add_lights(verb, raw);
+  verb.add_option("--resolution", raw.resolution, "WxH in pixels; 960x540");
+  verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 256));
+  verb.add_option("--max-depth", view.sampling.max_depth, "Generations of rays; 6")->check(CLI::Range(1, 16));
+}
+
+void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
+  StructureOptions& structures = arguments.structures;
+  verb.add_option("--memory", raw.memory, std::string("Budget in bytes, like 2G") + kRecorded);
+  verb.add_option("--ray-trees", raw.ray_trees, std::string("Percentage of ray trees kept") + kRecorded);
+  verb.add_option("--color-trees", raw.color_trees, std::string("Percentage of colour trees kept") + kRecorded);
+  verb.add_option("--tunnels", structures.tunnels, std::string("Lowest levels with tunnels") + kRecorded)
+      ->check(CLI::Range(0, 16));
+  verb.add_option("--groups", structures.groups, std::string("Most paths of a group; 0: none") + kRecorded)
+      ->check(CLI::Range(0, 1024));
+  verb.add_option("--atoms", structures.atoms, std::string("Depth at which nodes become atoms") + kRecorded)
+      ->check(CLI::Range(0, 64));
+  verb.add_option("--shadow-bits", structures.shadow_bits, std::string("Bits of a shadow counter") + kRecorded)
+      ->check(CLI::Range(0, 16));
+}
+
+void add_float(CLI::App& verb, Arguments& arguments) {
+  verb.add_flag("--float", arguments.float_frames, "Write 32-bit float frames instead of half");
+}
+
+CLI::Option* add_output(CLI::App& verb, Arguments& arguments, const char* help) {
+  return verb.add_option("-o,--output", arguments.output, help);
+}
+
+void add_inputs(CLI::App& verb, Arguments& arguments, const char* name, const char* help, int least, int most) {
+  verb.add_option(name, arguments.inputs, help)->required()->expected(least, most);
+}
+
+void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
+  constexpr int kMostJournals = 10000;
+  CLI::App& render = *app.add_subcommand("render", "Render a scene, edited by a journal perhaps");
+  add_inputs(render, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
+  add_output(render, arguments, "OpenEXR frame to write")->required();
+  render.add_option("--journal", arguments.journal, "Edit the scene by this journal first");
+  render.add_option("--step", arguments.step, "Last step to apply; all")->check(CLI::Range(0, 1000000))->needs("--journal");
+  add_view(render, arguments, raw);
+  add_look_patch(render, arguments);
+  add_float(render, arguments);
+
+  CLI::App& preprocess = *app.add_subcommand("preprocess", "Write the cache of a scene and a camera");
+  add_inputs(preprocess, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
+  add_output(preprocess, arguments, "Cache folder to write")->required();
+  add_view(preprocess, arguments, raw);
+  add_look_patch(preprocess, arguments);
+  add_structures(preprocess, arguments, raw);
+
+  CLI::App& replay = *app.add_subcommand("replay", "Replay journals against a cache: a frame per step and a report");
+  add_inputs(replay, arguments, "CACHE JOURNAL", "Cache folder, then journals", 2, kMostJournals);
+  add_output(replay, arguments, "Run folder to write")->required();
+  replay.add_flag("--verify{100}", raw.verify, "Compare with a full render after each step; =PERCENT of the tiles");
+  replay.add_flag("--baseline", arguments.baseline, "Measure one full render for the report");
+  replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
+  add_look_patch(replay, arguments);
+  add_lights(replay, raw);
+  add_float(replay, arguments);
+  add_structures(replay, arguments, raw);
+
+  CLI::App& compare = *app.add_subcommand("compare", "Compare two frames, or two runs of one journal");
+  add_inputs(compare, arguments, "A B", "Frames (.exr) or run folders", 2, 2);
+  add_output(compare, arguments, "Folder for compare.json");
+
+  CLI::App& inspect = *app.add_subcommand("inspect", "Say what a scene, cache, journal or run contains");
+  inspect.add_option("INPUT", arguments.inputs, "Scene, cache, journal or run")->expected(0, 1);
+  inspect
+      .add_option("--look", arguments.view.look_patch,
+                  "Print the look document of a scene or cache; with a JSON Patch: patched by it")
+      ->expected(0, 1);
+  inspect.add_option("--scene", arguments.scene, "Scene or cache that a journal edits: print the class of each step");
+  add_view(inspect, arguments, raw);
+
+  CLI::App& check = *app.add_subcommand("check", "Check every byte and invariant of a cache");
+  add_inputs(check, arguments, "CACHE", "Cache folder", 1, 1);
+  for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
+}
+
+constexpr std::array<std::string_view, 6> kVerbs{"render", "preprocess", "replay", "compare", "inspect", "check"};
+constexpr std::array<std::string_view, 4> kProgressStyles{"auto", "plain", "json", "none"};
+
+/// The place of `word` among `choices`. Throws UsageError with the nearest one.
+template <class Choices>
+std::size_t place_of(std::string_view word, const Choices& choices, const std::string& what) {
+  const auto found = std::find(choices.begin(), choices.end(), word);
+  if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
+  std::string message = "no " + what + " \"" + std::string(word) + "\"";
+  const std::string nearest = nearest_name(word, choices);
+  message += nearest.empty() ? "; see relook --help" : "; did you mean \"" + nearest + "\"?";
+  throw UsageError(message);
+}
+
+void resolve(const RawTexts& raw, Arguments& arguments) {
+  if (!raw.resolution.empty())
+    std::tie(arguments.view.width, arguments.view.height) = parse_resolution("--resolution", raw.resolution);
+  if (!raw.memory.empty()) arguments.structures.memory_bytes = parse_size("--memory", raw.memory);
+  if (!raw.ray_trees.empty()) arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);
+  if (!raw.color_trees.empty())
+    arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
+  if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
+  arguments.view.auto_lights = !raw.lights.empty();
+  arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "progress style"));
+}
+
+/// `inspect --look SCENE`: the word after --look is the input when there is no other.
+void resolve_inspect(const CLI::App& verb, Arguments& arguments) {
+  std::string& patch = arguments.view.look_patch;
+  if (arguments.inputs.empty() && !patch.empty()) arguments.inputs.push_back(std::exchange(patch, ""));
+  if (arguments.inputs.empty()) throw UsageError("INPUT is required");
+  arguments.print_look = verb.count("--look") > 0 && arguments.scene.empty();
+}
+
+}  // namespace
+
+ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
+  CLI::App app("relook: replays edits of a scene and recomputes exactly the part of the image that changed", "relook");
+  app.set_version_flag("--version", std::string("relook ") + std::string(program_version()));
+  app.require_subcommand(1);
+  Arguments arguments;
+  RawTexts raw;
+  add_verbs(app, arguments, raw);
+  if (argc < 2) throw UsageError("a verb is required; see relook --help");
+  if (argv[1][0] != '-') arguments.verb = static_cast<Verb>(place_of(argv[1], kVerbs, "verb"));
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    const auto chosen = app.get_subcommands();
+    return {std::nullopt, chosen.empty() ? app.help() : chosen.front()->help()};
+  } catch (const CLI::CallForVersion& version) {
+    return {std::nullopt, std::string(version.what()) + "\n"};
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  resolve(raw, arguments);
+  if (arguments.verb == Verb::inspect) resolve_inspect(*app.get_subcommands().front(), arguments);
+  return {std::move(arguments), ""};
+}
+
+}  // namespace relook

@@ -1,0 +1,30 @@
+#include "engine/cached_image.h"
+#include "load_cache.h"
+#include "verbs.h"
+
+namespace relook {
+
+ExitCode run_check(const Arguments& arguments, Console& console) {
+  const std::string& cache = arguments.inputs[0];
+  CacheReport report = check_cache(cache);
+  if (report.worst.fault == CacheFault::none) {
+    RestoredImage restored;
+    const CacheAnswer answer = restore_image(load_cache(cache), restored);
+    if (answer.fault != CacheFault::none) {
+      report.worst = answer;
+      report.findings.push_back(answer.file + ": " + answer.detail);
+    }
+  }
+  for (const std::string& finding : report.findings) console.line(finding);
+  console.line(cache + ": " + std::string(sentence(report.worst.fault)) + "; " + std::to_string(report.files) +
+               " files, " + std::to_string(report.bytes) + " bytes");
+  console.json({{"cache", cache},
+                {"sound", report.worst.fault == CacheFault::none},
+                {"files", report.files},
+                {"bytes", report.bytes},
+                {"findings", report.findings}});
+  require_sound(report.worst, cache);
+  return ExitCode::ok;
+}
+
+}  // namespace relook

@@ -1,0 +1,124 @@
+#include <filesystem>
+
+#include "cache/cache.h"
+#include "inspect_journal.h"
+#include "load_cache.h"
+#include "load_scene.h"
+#include "scene/look.h"
+#include "verbs.h"
+
+namespace relook {
+namespace {
+
+enum class Kind : std::uint8_t { scene, cache, journal, run };
+
+/// What the input is, by what it contains.
+Kind kind_of(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    if (std::filesystem::exists(path / "MANIFEST.json", error)) return Kind::cache;
+    if (std::filesystem::exists(path / "report.json", error)) return Kind::run;
+    throw InputError(path.string(), "", "neither a cache nor a run");
+  }
+  if (path.extension() != ".json") return Kind::scene;
+  const Bytes bytes = read_file(path);
+  const Json document = parse_json(text_of(bytes), path.string());
+  return document.is_object() && document.contains("asset") ? Kind::scene : Kind::journal;
+}
+
+std::size_t count(const Json& look, Section section) {
+  const std::string key(section_name(section));
+  return look.contains(key) ? look[key].size() : 0;
+}
+
+void inspect_scene(const Arguments& arguments, Console& console) {
+  const LoadedDocument loaded = load_document(arguments.inputs[0], arguments.view);
+  console.warn(loaded.warnings);
+  const LookDocument& document = loaded.document;
+  std::uint64_t triangles = 0;
+  for (const Mesh& mesh : document.assets->meshes) triangles += mesh.triangles.size();
+  Json cameras = Json::array();
+  for (const auto& [name, camera] : document.cameras.items()) cameras.push_back(name);
+  Json summary{{"scene", arguments.inputs[0]}, {"scene_hash", loaded.hash}, {"triangles", triangles},
+               {"cameras", cameras},           {"warnings", Json::array()}};
+  for (const std::string& warning : loaded.warnings) summary["warnings"].push_back(printable(warning));
+  std::string line = arguments.inputs[0] + ": " + std::to_string(triangles) + " triangles";
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const auto section = static_cast<Section>(s);
+    summary[std::string(section_name(section))] = count(document.look, section);
+    line += ", " + std::to_string(count(document.look, section)) + " " + std::string(section_name(section));
+  }
+  console.line(line);
+  for (const Json& name : cameras) console.line("camera " + name.get<std::string>());
+  console.json(summary);
+}
+
+void inspect_cache(const Arguments& arguments, Console& console) {
+  Json manifest;
+  require_sound(read_manifest(arguments.inputs[0], manifest), arguments.inputs[0]);
+  const Json& content = manifest["content"];
+  std::uint64_t bytes = 0;
+  for (const Json& file : content["files"]) bytes += file["bytes"].get<std::uint64_t>();
+  console.line(arguments.inputs[0] + ": scene " + content["scene"].get<std::string>() + ", camera " +
+               content["camera"]["name"].get<std::string>() + ", " + content["camera"]["width"].dump() + "x" +
+               content["camera"]["height"].dump() + ", " + content["samples"].dump() + " samples a pixel, depth " +
+               content["max_depth"].dump() + ", " + content["objects"].dump() + " objects, " +
+               content["lights"].dump() + " lights, " + std::to_string(content["files"].size()) + " files, " +
+               std::to_string(bytes) + " bytes");
+  console.json(manifest);
+}
+
+void inspect_run(const Arguments& arguments, Console& console) {
+  const std::filesystem::path path = std::filesystem::path(arguments.inputs[0]) / "report.json";
+  const Bytes bytes = read_file(path);
+  const std::string file = path.string();
+  const Json report = parse_json(text_of(bytes), file);
+  const JsonView view(report, file);
+  if (view.at("relook").text() != "report/1") view.at("relook").fail("not a report that this program reads");
+  const JsonView steps = view.at("steps");
+  steps.require_array();
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const JsonView step = steps.at(i);
+    std::string line = printable(step.at("frame").text()) + ": " + printable(step.at("class").text()) + " \"" +
+                       printable(step.at("name").text()) + "\", ";
+    line += std::to_string(step.at("pixels_changed").integer(0, INT64_MAX)) + " pixels changed, " +
+            std::to_string(step.at("seconds").at("total").number(0, 1e12)) + " s";
+    const JsonView verify = step.at("verify");
+    if (verify.value().is_object())
+      line += ", " + std::to_string(verify.at("pixels_different").integer(0, INT64_MAX)) + " of " +
+              std::to_string(verify.at("pixels_compared").integer(0, INT64_MAX)) + " pixels differ";
+    console.line(line);
+  }
+  console.json(report);
+}
+
+/// The look document itself goes to stdout, whatever --json says; --quiet is for other verbs.
+void print_look(const Arguments& arguments, Kind kind) {
+  const std::string& input = arguments.inputs[0];
+  if (kind != Kind::scene && kind != Kind::cache) throw UsageError("--look: " + input + " is neither a scene nor a cache");
+  if (kind == Kind::cache && !arguments.view.look_patch.empty())
+    throw UsageError("--look: the look document of a cache is fixed; patch the scene");
+  const Json look = kind == Kind::scene ? load_document(input, arguments.view).document.look
+                                        : load_cache(input).document.look;
+  std::puts(look.dump(2).c_str());
+}
+
+}  // namespace
+
+ExitCode run_inspect(const Arguments& arguments, Console& console) {
+  const Kind kind = kind_of(arguments.inputs[0]);
+  if (!arguments.scene.empty() && kind != Kind::journal) throw UsageError("--scene: " + arguments.inputs[0] + " is no journal");
+  if (arguments.print_look) {
+    print_look(arguments, kind);
+    return ExitCode::ok;
+  }
+  switch (kind) {
+    case Kind::scene: inspect_scene(arguments, console); break;
+    case Kind::cache: inspect_cache(arguments, console); break;
+    case Kind::journal: inspect_journal(arguments, console); break;
+    case Kind::run: inspect_run(arguments, console); break;
+  }
+  return ExitCode::ok;
+}
+
+}  // namespace relook

@@ -1,0 +1,96 @@
+#include "inspect_journal.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "base/error.h"
+#include "edit/apply.h"
+#include "edit/journal.h"
+#include "load_cache.h"
+#include "load_scene.h"
+
+namespace relook {
+namespace {
+
+/// The state a journal is tried on. Edits of the active camera are refused when there is one: that of a cache, of --camera,
+/// or the only one of the scene.
+SceneState open_state(const Arguments& arguments) {
+  std::error_code error;
+  if (std::filesystem::is_directory(arguments.scene, error)) {
+    CacheContent content = load_cache(arguments.scene);
+    return {std::move(content.document), content.camera, content.pyramids};
+  }
+  LoadedDocument loaded = load_document(arguments.scene, arguments.view);
+  const ViewArguments& view = arguments.view;
+  const bool has_camera = !view.camera.empty() || !loaded.document.cameras.empty();
+  const Camera camera =
+      choose_camera(loaded.document, has_camera ? view.camera : std::string("auto"), view.width, view.height);
+  if (view.auto_lights) add_auto_lights(loaded.document, camera);
+  return {std::move(loaded.document), camera, std::make_shared<PyramidStore>()};
+}
+
+Classification classify_edit(SceneState& state, const Edit& edit, const Journal& journal) {
+  const SceneDelta delta = apply_edit(state, edit, journal.file, journal.path.parent_path());
+  return classify(state.scene(), delta);
+}
+
+Json step_json(const JournalStep& step, std::size_t number) {
+  Json selected = Json::array();
+  for (const std::string& pointer : step.select) selected.push_back(pointer);
+  return {{"step", number},
+          {"name", step.name},
+          {"operations", step.edit.size()},
+          {"drag_frames", step.drag.size()},
+          {"select", std::move(selected)}};
+}
+
+void add_classification(Json& entry, const Classification& classification) {
+  entry["class"] = change_class_name(classification.change);
+  entry["reasons"] = classification.reasons;
+}
+
+void print_step(const Json& entry, const std::string& label, Console& console) {
+  std::string line = label + " \"" + printable(entry["name"].get<std::string>()) + "\"";
+  if (!entry.contains("class")) {
+    const std::size_t frames = entry["drag_frames"].get<std::size_t>();
+    line += frames > 0 ? ": a drag of " + std::to_string(frames) + " frames"
+                       : ": " + std::to_string(entry["operations"].get<std::size_t>()) + " operations";
+    console.line(line);
+    return;
+  }
+  console.line(line + ": " + entry["class"].get<std::string>());
+  for (const Json& reason : entry["reasons"]) console.line("  " + printable(reason.get<std::string>()));
+}
+
+}  // namespace
+
+void inspect_journal(const Arguments& arguments, Console& console) {
+  const Journal journal = read_journal(arguments.inputs[0]);
+  std::optional<SceneState> state;
+  if (!arguments.scene.empty()) {
+    state.emplace(open_state(arguments));
+    check_journal(*state, journal);
+  }
+  Json steps = Json::array();
+  for (std::size_t i = 0; i < journal.steps.size(); ++i) {
+    const JournalStep& step = journal.steps[i];
+    const std::string label = std::to_string(i + 1);
+    Json entry = step_json(step, i + 1);
+    if (state && step.drag.empty()) add_classification(entry, classify_edit(*state, step.edit, journal));
+    if (!state || step.drag.empty()) {
+      print_step(entry, label, console);
+      steps.push_back(std::move(entry));
+      continue;
+    }
+    for (std::size_t frame = 0; frame < step.drag.size(); ++frame) {
+      Json drag_entry = entry;
+      drag_entry["drag_frame"] = frame + 1;
+      add_classification(drag_entry, classify_edit(*state, step.drag[frame], journal));
+      print_step(drag_entry, label + "." + std::to_string(frame + 1), console);
+      steps.push_back(std::move(drag_entry));
+    }
+  }
+  console.json({{"journal", journal.file}, {"hash", journal.hash}, {"steps", std::move(steps)}});
+}
+
+}  // namespace relook

@@ -1,0 +1,77 @@
+#include "load_scene.h"
+
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "edit/apply.h"
+#include "edit/journal.h"
+#include "scene/import.h"
+
+namespace relook {
+namespace {
+
+template <class T>
+std::string column_hash(const std::vector<T>& values) {
+  return hash128(std::as_bytes(std::span<const T>(values)));
+}
+
+/// Hash of everything that a scene file and the files beside it contribute.
+std::string content_hash(const std::string& path, const LookDocument& document) {
+  std::string digests = hash128(read_file(path));
+  for (const Mesh& mesh : document.assets->meshes)
+    digests += column_hash(mesh.positions) + column_hash(mesh.triangles) + column_hash(mesh.normals) +
+               column_hash(mesh.tangents) + column_hash(mesh.uv[0]) + column_hash(mesh.uv[1]) +
+               column_hash(mesh.colors);
+  for (const auto& [name, image] : document.assets->images)
+    digests += name + (image.bytes ? hash128(*image.bytes) : "-");
+  for (const auto& [node, matrices] : document.instances) digests += node + column_hash(matrices);
+  return digests;
+}
+
+LookDocument patched(LookDocument document, const std::string& patch_path) {
+  const Edit edit = read_patch(patch_path);
+  Camera unused;
+  unused.width = unused.height = 1;
+  SceneState state(std::move(document), unused, std::make_shared<PyramidStore>());
+  apply_edit(state, edit, patch_path, std::filesystem::path(patch_path).parent_path());
+  return std::move(state.editable_document());
+}
+
+bool is_lit(const Scene& scene) {
+  const Color black(0, 0, 0);
+  const Environment& environment = scene.environment;
+  return !scene.lights.empty() || scene.ambient != black ||
+         (environment.intensity > 0 && (environment.color != black || environment.image != nullptr));
+}
+
+}  // namespace
+
+LoadedDocument load_document(const std::string& path, const ViewArguments& view) {
+  ImportedGltf imported = import_gltf(path);
+  LoadedDocument loaded;
+  loaded.warnings = imported.warnings;
+  loaded.document = make_look_document(std::move(imported));
+  if (!view.look_patch.empty()) loaded.document = patched(std::move(loaded.document), view.look_patch);
+  std::string digests = content_hash(path, loaded.document);
+  if (!view.look_patch.empty()) digests += hash128(read_file(view.look_patch));
+  if (view.auto_lights) digests += "lights auto";
+  loaded.hash = hash128(bytes_of(digests));
+  return loaded;
+}
+
+LoadedScene load_scene(const std::string& path, const ViewArguments& view) {
+  LoadedDocument loaded = load_document(path, view);
+  const Camera camera = choose_camera(loaded.document, view.camera, view.width, view.height);
+  if (view.auto_lights) add_auto_lights(loaded.document, camera);
+  LoadedScene scene;
+  scene.hash = std::move(loaded.hash);
+  scene.warnings = std::move(loaded.warnings);
+  scene.state = std::make_unique<SceneState>(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
+  if (!is_lit(scene.state->scene()))
+    throw InputError(path, "", "the scene has no light: add some with --lights auto or --look PATCH.json");
+  return scene;
+}
+
+}  // namespace relook

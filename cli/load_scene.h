@@ -1,0 +1,31 @@
+// From a scene file and the VIEW options to a compiled scene with a camera and lights.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "scene/look.h"
+#include "scene/state.h"
+
+namespace relook {
+
+struct LoadedScene {
+  std::unique_ptr<SceneState> state;
+  std::string hash;  // XXH3-128 of the scene's content, the look patch and --lights
+  std::vector<std::string> warnings;
+};
+
+/// The look document of a scene with --look applied, and what load_scene() needs beside it.
+struct LoadedDocument {
+  LookDocument document;
+  std::string hash;
+  std::vector<std::string> warnings;
+};
+[[nodiscard]] LoadedDocument load_document(const std::string& path, const ViewArguments& view);
+
+/// Applies --look, then --camera and --lights. Throws InputError that names the flag when the scene has no camera or no
+/// light.
+[[nodiscard]] LoadedScene load_scene(const std::string& path, const ViewArguments& view);
+
+}  // namespace relook

@@ -1,0 +1,44 @@
+#include "cache/cache.h"
+#include "engine/cached_image.h"
+#include "engine/render.h"
+#include "load_cache.h"
+#include "load_scene.h"
+#include "verbs.h"
+
+namespace relook {
+
+ExitCode run_preprocess(const Arguments& arguments, Console& console) {
+  refuse_foreign_folder(arguments.output);
+  LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
+  console.warn(loaded.warnings);
+  RenderStats stats;
+  Image image = preprocess(loaded.state->scene(), arguments.view.sampling, stats, console.stage("preprocess"));
+  console.end_stage();
+  const std::size_t paths = image.paths.size();
+  const CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash);
+  console.check_interrupt();
+  write_cache(arguments.output, content);
+
+  Json manifest;
+  require_sound(read_manifest(arguments.output, manifest), arguments.output);
+  std::uint64_t bytes = 0;
+  for (const Json& file : manifest["content"]["files"]) bytes += file["bytes"].get<std::uint64_t>();
+  console.line(arguments.output + ": " + std::to_string(content.objects) + " objects, " + std::to_string(paths) +
+               " ray paths, " + std::to_string(bytes) + " bytes, " + std::to_string(stats.render_seconds) + " s");
+  console.json({{"cache", arguments.output},
+                {"scene_hash", content.scene_hash},
+                {"camera", content.camera.name},
+                {"resolution", {content.camera.width, content.camera.height}},
+                {"objects", content.objects},
+                {"lights", content.lights},
+                {"ray_paths", paths},
+                {"bytes", bytes},
+                {"samples_total", stats.counters.samples_total},
+                {"ray_updates", stats.counters.ray_updates},
+                {"shadow_updates", stats.counters.shadow_updates},
+                {"build_seconds", stats.build_seconds},
+                {"render_seconds", stats.render_seconds}});
+  return ExitCode::ok;
+}
+
+}  // namespace relook

@@ -1,0 +1,65 @@
+#include "engine/render.h"
+
+#include "base/hash.h"
+#include "edit/apply.h"
+#include "engine/frame_file.h"
+#include "load_scene.h"
+#include "verbs.h"
+
+namespace relook {
+namespace {
+
+/// The scene as edited by steps 1..last. Returns how many steps that were.
+std::size_t apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last) {
+  if (last && *last > journal.steps.size())
+    throw UsageError("--step: " + std::to_string(*last) + " is beyond the " + std::to_string(journal.steps.size()) +
+                     " steps of " + journal.file);
+  const std::size_t count = last ? *last : journal.steps.size();
+  check_journal(state, journal);
+  const std::filesystem::path folder = journal.path.parent_path();
+  for (std::size_t i = 0; i < count; ++i) {
+    const JournalStep& step = journal.steps[i];
+    if (step.drag.empty()) apply_edit(state, step.edit, journal.file, folder);
+    for (const Edit& entry : step.drag) apply_edit(state, entry, journal.file, folder);
+  }
+  return count;
+}
+
+}  // namespace
+
+ExitCode run_render(const Arguments& arguments, Console& console) {
+  std::optional<Journal> journal;
+  if (!arguments.journal.empty()) journal = read_journal(arguments.journal);
+  LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
+  console.warn(loaded.warnings);
+  FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
+  if (journal) {
+    meta.journal_hash = journal->hash;
+    meta.step = std::to_string(apply_journal(*loaded.state, *journal, arguments.step));
+  }
+  make_folders(std::filesystem::absolute(arguments.output).parent_path());
+  RenderStats stats;
+  const Frame frame = render(loaded.state->scene(), arguments.view.sampling, stats, console.stage("render"));
+  console.end_stage();
+  const Bytes bytes = encode_exr(frame, meta, arguments.float_frames ? PixelFormat::float32 : PixelFormat::half);
+  console.check_interrupt();
+  write_file(arguments.output, bytes);
+
+  const std::string hash = hash128(bytes);
+  console.line(arguments.output + ": " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + ", " +
+               std::to_string(stats.counters.ray_updates) + " rays, " + std::to_string(stats.counters.shadow_updates) +
+               " shadow rays, " + std::to_string(stats.render_seconds) + " s");
+  console.json({{"frame", arguments.output},
+                {"hash", hash},
+                {"scene_hash", loaded.hash},
+                {"camera", loaded.state->scene().camera.name},
+                {"resolution", {frame.width, frame.height}},
+                {"samples_total", stats.counters.samples_total},
+                {"ray_updates", stats.counters.ray_updates},
+                {"shadow_updates", stats.counters.shadow_updates},
+                {"build_seconds", stats.build_seconds},
+                {"render_seconds", stats.render_seconds}});
+  return ExitCode::ok;
+}
+
+}  // namespace relook

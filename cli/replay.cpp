@@ -1,0 +1,259 @@
+#include "engine/replay.h"
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "base/parallel.h"
+#include "edit/apply.h"
+#include "engine/cached_image.h"
+#include "engine/compare.h"
+#include "engine/render.h"
+#include "load_cache.h"
+#include "load_scene.h"
+#include "run_folder.h"
+#include "verbs.h"
+
+namespace relook {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The class of several edits together, by the rule of classify().
+ChangeClass combined(ChangeClass a, ChangeClass b) {
+  const auto is = [&](ChangeClass kind) { return a == kind || b == kind; };
+  if (is(ChangeClass::mixed) || (is(ChangeClass::optical) && is(ChangeClass::geometric))) return ChangeClass::mixed;
+  return std::max(a, b);
+}
+
+/// Replays one journal into one run folder.
+class JournalRun {
+ public:
+  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
+             std::string scene_hash, CacheSizes cache, const std::filesystem::path& folder);
+
+  /// Writes the report whatever ends the run. Returns the number of pixels that --verify found different.
+  std::uint64_t run();
+  [[nodiscard]] const RunReport& report() const { return report_; }
+
+ private:
+  void run_steps();
+  void base_step();
+  void edit_step(const JournalStep& step);
+  void drag_step(const JournalStep& step);
+  StepResult apply(StepReport& entry, const Edit& edit);
+  void finish(StepReport entry, std::span<const std::uint32_t> changed_pixels,
+              std::chrono::steady_clock::time_point start);
+  void verify(StepReport& entry);
+  Frame full_render();
+  void print(const StepReport& entry);
+
+  const Arguments& arguments_;
+  Console& console_;
+  const Journal& journal_;
+  Replayer replayer_;
+  RunFolder folder_;
+  RunReport report_;
+  std::uint64_t pixels_different_ = 0;
+};
+
+JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
+                       std::string scene_hash, CacheSizes cache, const std::filesystem::path& folder)
+    : arguments_(arguments), console_(console), journal_(journal),
+      replayer_(std::move(*restored.state), std::move(restored.image)),
+      folder_(folder, replayer_.image().frame.width, replayer_.image().frame.height,
+              arguments.float_frames ? PixelFormat::float32 : PixelFormat::half) {
+  report_.scene = replayer_.state().document().file;
+  report_.scene_hash = std::move(scene_hash);
+  report_.journal = journal.file;
+  report_.journal_hash = journal.hash;
+  report_.camera = replayer_.state().scene().camera;
+  report_.view = replayer_.image().view;
+  report_.structures = arguments.structures;
+  report_.float_frames = arguments.float_frames;
+  report_.verify_percent = arguments.verify_percent;
+  report_.threads = thread_count();
+  report_.cache = std::move(cache);
+}
+
+std::uint64_t JournalRun::run() {
+  try {
+    run_steps();
+  } catch (const Interrupted&) {
+    report_.interrupted = true;
+    folder_.write_report(report_);
+    throw;
+  }
+  folder_.write_report(report_);
+  return pixels_different_;
+}
+
+void JournalRun::run_steps() {
+  base_step();
+  for (const JournalStep& step : journal_.steps) {
+    if (step.drag.empty())
+      edit_step(step);
+    else
+      drag_step(step);
+  }
+}
+
+void JournalRun::base_step() {
+  StepReport entry;
+  entry.name = "base";
+  const Frame& frame = replayer_.image().frame;
+  entry.counters.samples_total = std::uint64_t{frame.width} * frame.height * report_.view.samples;
+  if (arguments_.baseline && !arguments_.verify_percent) full_render();
+  finish(std::move(entry), {}, std::chrono::steady_clock::now());
+}
+
+StepResult JournalRun::apply(StepReport& entry, const Edit& edit) {
+  console_.check_interrupt();
+  StepResult result = replayer_.step(edit, journal_.file, journal_.path.parent_path());
+  entry.change = result.classification.change;
+  entry.reasons = result.classification.reasons;
+  entry.counters = result.counters;
+  entry.seconds = result.seconds;
+  return result;
+}
+
+void JournalRun::edit_step(const JournalStep& step) {
+  const auto start = std::chrono::steady_clock::now();
+  StepReport entry;
+  entry.step = report_.steps.back().step + 1;
+  entry.name = step.name;
+  const StepResult result = apply(entry, step.edit);
+  finish(std::move(entry), result.changed_pixels, start);
+}
+
+void JournalRun::drag_step(const JournalStep& step) {
+  const std::uint32_t number = report_.steps.back().step + 1;
+  ChangeClass change = ChangeClass::color;
+  for (std::uint32_t i = 0; i < step.drag.size(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    StepReport entry;
+    entry.step = number;
+    entry.name = step.name;
+    entry.drag_frame = i + 1;
+    const StepResult result = apply(entry, step.drag[i]);
+    change = combined(change, entry.change);
+    finish(std::move(entry), result.changed_pixels, start);
+  }
+  StepReport released;
+  released.step = number;
+  released.name = step.name;
+  released.change = change;
+  released.reasons = {"the selection is released where the last entry put it"};
+  released.counters.samples_total = report_.steps.back().counters.samples_total;
+  finish(std::move(released), {}, std::chrono::steady_clock::now());
+}
+
+void JournalRun::finish(StepReport entry, std::span<const std::uint32_t> changed_pixels,
+                        std::chrono::steady_clock::time_point start) {
+  FrameMeta meta;
+  meta.scene_hash = report_.scene_hash;
+  meta.journal_hash = report_.journal_hash;
+  folder_.write_step(entry, replayer_.image().frame, changed_pixels, std::move(meta));
+  entry.seconds.total = seconds_since(start);
+  entry.resident = replayer_.resident();
+  entry.peak_rss_bytes = peak_rss_bytes();
+  report_.steps.push_back(std::move(entry));
+  if (arguments_.verify_percent) verify(report_.steps.back());
+  print(report_.steps.back());
+}
+
+Frame JournalRun::full_render() {
+  const SceneState fresh(replayer_.state().document(), report_.camera, replayer_.state().pyramids());
+  RenderStats stats;
+  Frame frame = render(fresh.scene(), report_.view, stats, console_.stage("full render"));
+  console_.end_stage();
+  if (!report_.full_render_seconds) report_.full_render_seconds = stats.build_seconds + stats.render_seconds;
+  return frame;
+}
+
+void JournalRun::verify(StepReport& entry) {
+  const FrameDifference difference =
+      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent);
+  entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
+  pixels_different_ += difference.pixels_different;
+}
+
+void JournalRun::print(const StepReport& entry) {
+  const Counters& counters = entry.counters;
+  std::string line = step_label(entry.step, entry.drag_frame) + " " + std::string(change_class_name(entry.change)) +
+                     " \"" + printable(entry.name) + "\": " + std::to_string(counters.pixels_changed) +
+                     " pixels changed, " + std::to_string(counters.ray_updates) + " ray updates, " +
+                     std::to_string(counters.shadow_updates) + " shadow updates, " +
+                     std::to_string(entry.seconds.total) + " s";
+  if (entry.verify)
+    line += ", verified: " + std::to_string(entry.verify->pixels_different) + " of " +
+            std::to_string(entry.verify->pixels_compared) + " pixels differ";
+  console_.line(line);
+}
+
+CacheSizes cache_sizes(const std::string& cache) {
+  Json manifest;
+  require_sound(read_manifest(cache, manifest), cache);
+  CacheSizes sizes;
+  for (const Json& file : manifest["content"]["files"]) {
+    const auto& name = file["name"].get_ref<const std::string&>();
+    const auto bytes = file["bytes"].get<std::uint64_t>();
+    sizes.bytes_by_part[name.substr(0, name.find_first_of("-/."))] += bytes;
+    sizes.total_bytes += bytes;
+  }
+  return sizes;
+}
+
+/// The journals of the command line, their names distinct.
+std::vector<Journal> read_journals(const Arguments& arguments) {
+  std::vector<Journal> journals;
+  std::set<std::string> names;
+  for (std::size_t i = 1; i < arguments.inputs.size(); ++i) {
+    journals.push_back(read_journal(arguments.inputs[i]));
+    if (!names.insert(journals.back().name).second)
+      throw UsageError("two journals are called \"" + journals.back().name + "\": their runs would share a folder");
+  }
+  return journals;
+}
+
+RestoredImage restore(CacheContent content, const std::string& cache) {
+  RestoredImage restored;
+  require_sound(restore_image(std::move(content), restored), cache);
+  return restored;
+}
+
+}  // namespace
+
+ExitCode run_replay(const Arguments& arguments, Console& console) {
+  const std::string& cache = arguments.inputs[0];
+  const std::vector<Journal> journals = read_journals(arguments);
+  const bool has_several = journals.size() > 1;
+  std::vector<std::filesystem::path> folders;
+  for (const Journal& journal : journals) {
+    folders.push_back(arguments.output);
+    if (has_several) folders.back() /= journal.name;
+    RunFolder::refuse_foreign(folders.back());
+  }
+  CacheContent content = load_cache(cache);
+  if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != content.scene_hash)
+    require_sound({CacheFault::other_scene, "", ""}, cache);
+  const std::string scene_hash = content.scene_hash;
+  const CacheSizes sizes = cache_sizes(cache);
+
+  std::uint64_t pixels_different = 0;
+  RestoredImage restored = restore(has_several ? content : std::move(content), cache);
+  for (const Journal& journal : journals) check_journal(*restored.state, journal);
+  Json runs = Json::array();
+  for (std::size_t i = 0; i < journals.size(); ++i) {
+    if (i > 0) restored = restore(i + 1 < journals.size() ? content : std::move(content), cache);
+    JournalRun run(arguments, console, journals[i], std::move(restored), scene_hash, sizes, folders[i]);
+    pixels_different += run.run();
+    runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
+  }
+  console.json({{"runs", std::move(runs)}, {"pixels_different", pixels_different}});
+  return pixels_different == 0 ? ExitCode::ok : ExitCode::difference;
+}
+
+}  // namespace relook

@@ -1,0 +1,68 @@
+#include "run_folder.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "engine/preview.h"
+
+namespace relook {
+namespace {
+
+constexpr std::array<std::string_view, 4> kRunEntries{"frames", "previews", "report.json", "report.html"};
+
+void remove_entry(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::remove_all(path, error);
+  if (error) throw IoError(path.string(), "cannot be removed: " + error.message());
+}
+
+}  // namespace
+
+void RunFolder::refuse_foreign(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return;
+  if (!std::filesystem::is_directory(path, error)) throw InputError(path.string(), "", "exists and is not a folder");
+  if (std::filesystem::is_empty(path, error)) return;
+  for (const std::string_view entry : kRunEntries)
+    if (std::filesystem::exists(path / entry, error)) return;
+  throw InputError(path.string(), "", "exists and is not a run: not overwritten");
+}
+
+RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format)
+    : path_(std::move(path)), encoder_(width, height, format) {
+  make_folders(path_);
+  remove_entry(path_ / "report.json");
+  for (const std::string_view entry : kRunEntries) remove_entry(path_ / entry);
+  make_folders(path_ / "frames");
+  make_folders(path_ / "previews");
+}
+
+void RunFolder::write_step(StepReport& step, const Frame& frame, std::span<const std::uint32_t> changed_pixels,
+                           FrameMeta meta) {
+  const auto start = std::chrono::steady_clock::now();
+  const bool is_first = preview_.empty();
+  if (is_first)
+    encoder_.update(frame);
+  else
+    encoder_.update(frame, changed_pixels);
+  if (is_first || !changed_pixels.empty()) preview_ = encode_png(frame);
+  meta.step = step_label(step.step, step.drag_frame);
+  meta.change_class = change_class_name(step.change);
+  const Bytes bytes = encoder_.exr(meta);
+  step.frame = frame_name(step.step, step.drag_frame);
+  step.preview = preview_name(step.step, step.drag_frame);
+  step.frame_hash = hash128(bytes);
+  write_file(path_ / step.frame, bytes);
+  write_file(path_ / step.preview, preview_);
+  step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void RunFolder::write_report(const RunReport& report) const {
+  write_file(path_ / "report.json", report_json(report).dump(2) + "\n");
+}
+
+}  // namespace relook

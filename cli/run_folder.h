@@ -1,0 +1,33 @@
+// The folder of one run: frames, previews and, last, the report. Files appear whole or not at all; those of an earlier run
+// are removed first.
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "base/json.h"
+#include "engine/frame_file.h"
+#include "engine/report.h"
+
+namespace relook {
+
+class RunFolder {
+ public:
+  /// Throws InputError when `path` is there and neither empty nor a run.
+  static void refuse_foreign(const std::filesystem::path& path);
+
+  /// Creates the folder, or empties that of an earlier run.
+  RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format);
+
+  /// Writes the frame and preview of a step and sets step.frame, frame_hash, preview and seconds.write. Only tiles of
+  /// changed pixels are compressed again. `meta.step` and `meta.change_class` are taken from `step`.
+  void write_step(StepReport& step, const Frame& frame, std::span<const std::uint32_t> changed_pixels, FrameMeta meta);
+  void write_report(const RunReport& report) const;
+
+ private:
+  std::filesystem::path path_;
+  FrameEncoder encoder_;
+  Bytes preview_;  // of the last frame; empty before the first
+};
+
+}  // namespace relook

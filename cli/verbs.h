@@ -1,0 +1,16 @@
+// One function per verb. Errors are thrown; main() prints them.
+#pragma once
+#include "arguments.h"
+#include "base/error.h"
+#include "console.h"
+
+namespace relook {
+
+[[nodiscard]] ExitCode run_render(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_preprocess(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_replay(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_compare(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_inspect(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_check(const Arguments& arguments, Console& console);
+
+}  // namespace relook

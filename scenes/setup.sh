@@ -1,0 +1,33 @@
+# Sourced by demo.sh and ../tests/run.sh from the project's root: installs what is missing (Debian 12), configures, builds.
+
+# openimageio-tools: OpenImageIO's CMake files refuse to load without its programs.
+packages="g++ cmake make pkg-config python3 libembree-dev libopenimageio-dev openimageio-tools libopenexr-dev \
+libimath-dev libtinygltf-dev nlohmann-json3-dev libcli11-dev libgtest-dev libbenchmark-dev libtbb-dev libzstd-dev \
+libxxhash-dev zlib1g-dev"
+
+install_packages() {
+  missing=""
+  for package in $packages; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+  done
+  [ -n "$missing" ] || return 0
+  if ! command -v apt-get >/dev/null; then
+    echo "relook: no apt-get here; please install what these Debian packages hold:$missing" >&2
+    return 1
+  fi
+  as_root=""
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || { echo "relook: run as root, or install sudo; missing:$missing" >&2; return 1; }
+    as_root=sudo
+  fi
+  echo "Installing with apt-get:$missing"
+  $as_root apt-get update -qq </dev/null
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing </dev/null
+}
+
+# build TARGET...: out of date parts only.
+build() {
+  echo "Building $* in build/release (a few minutes the first time)"
+  cmake --preset release --log-level=WARNING
+  cmake --build --preset release -j "$(nproc)" --target "$@"
+}

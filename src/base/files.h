@@ -1,0 +1,45 @@
+// Checked files: what is read is a regular file of bounded size; what is written appears under its final name whole and
+// synced, or not at all.
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relook {
+
+using Bytes = std::vector<std::byte>;
+using BytesView = std::span<const std::byte>;
+
+[[nodiscard]] inline BytesView bytes_of(std::string_view text) {
+  return std::as_bytes(std::span<const char>(text.data(), text.size()));
+}
+[[nodiscard]] inline std::string_view text_of(BytesView bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Default upper bound of read_file: larger inputs are refused.
+inline constexpr std::size_t kLargestInputBytes = std::size_t{8} << 30;
+
+/// The whole of a regular file. Never blocks on a FIFO or device. Throws InputError (missing, not a regular file,
+/// larger than `limit_bytes`, unreadable).
+[[nodiscard]] Bytes read_file(const std::filesystem::path& path, std::size_t limit_bytes = kLargestInputBytes);
+
+/// Resolves a relative URI (already percent-decoded) of a file that must lie below `folder`: no absolute path, no "..",
+/// no symbolic link that leads out. Throws InputError{file, where, ...}.
+[[nodiscard]] std::filesystem::path contained_path(const std::filesystem::path& folder, std::string_view uri,
+                                                   std::string_view file, std::string_view where);
+
+/// Writes to a temporary file beside `path`, checks every write, fsync and close, renames, syncs the folder. On failure
+/// the temporary is gone, `path` is as before, and IoError or ResourceError (disk full) is thrown.
+void write_file(const std::filesystem::path& path, BytesView bytes);
+inline void write_file(const std::filesystem::path& path, std::string_view text) { write_file(path, bytes_of(text)); }
+
+/// Syncs a folder's entries to disk. Throws IoError.
+void sync_folder(const std::filesystem::path& folder);
+/// Creates a folder and its parents. Throws IoError or ResourceError.
+void make_folders(const std::filesystem::path& folder);
+
+}  // namespace relook

@@ -1,0 +1,14 @@
+// XXH3 behind two functions.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "base/files.h"
+
+namespace relook {
+
+[[nodiscard]] std::uint64_t hash64(BytesView bytes, std::uint64_t seed = 0);
+/// XXH3-128 as 32 lower-case hexadecimal digits.
+[[nodiscard]] std::string hash128(BytesView bytes);
+
+}  // namespace relook

@@ -1,0 +1,20 @@
+// Role names over Imath: what transforms differently has a different name. All lengths in metres, angles in radians,
+// colours linear Rec.709. Imath multiplies row vectors: `point * matrix`.
+#pragma once
+#include <ImathBox.h>
+#include <ImathColor.h>
+#include <ImathMatrix.h>
+#include <ImathVec.h>
+
+namespace relook {
+
+using Point = Imath::V3f;
+using Direction = Imath::V3f;
+using Normal = Imath::V3f;
+using Uv = Imath::V2f;
+using Color = Imath::C3f;   // linear RGB
+using Rgba = Imath::C4f;    // linear RGB, coverage
+using Transform = Imath::M44f;
+using Box = Imath::Box3f;
+
+}  // namespace relook

@@ -1,0 +1,33 @@
+#include "base/parallel.h"
+
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+
+#include <memory>
+
+namespace relook {
+namespace {
+
+// TBB's limit lives as long as this object: the one piece of state that belongs to the process.
+std::unique_ptr<tbb::global_control>& limit() {
+  static std::unique_ptr<tbb::global_control> control;
+  return control;
+}
+
+}  // namespace
+
+void set_thread_count(std::size_t threads) {
+  limit().reset();
+  if (threads > 0) limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+}
+
+std::size_t thread_count() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }
+
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+}  // namespace relook

@@ -1,0 +1,17 @@
+// Work split over threads. Results must go to slots of their own index: the order of execution is not defined, the
+// outcome must not depend on it.
+#pragma once
+#include <cstddef>
+#include <functional>
+
+namespace relook {
+
+/// Limits every later parallel_for of the process; 0 means all hardware threads. Call before any other work.
+void set_thread_count(std::size_t threads);
+[[nodiscard]] std::size_t thread_count();
+
+/// Calls body(i) once for each i in [0, count), `grain` at least at a time on one thread. The first exception thrown by
+/// a body is rethrown here.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain = 1);
+
+}  // namespace relook

@@ -1,0 +1,278 @@
+#include "cache/cache.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/parallel.h"
+#include "cache/image_parts.h"
+#include "cache/manifest.h"
+#include "cache/scene_parts.h"
+#include "cache/staged_folder.h"
+
+namespace relook {
+namespace {
+
+enum class Part : std::uint8_t { look, geometry, textures, frame, paths, trees };
+constexpr std::array<std::string_view, 6> kPartNames{"look.json", "geometry", "textures", "frame", "paths", "trees"};
+
+struct PartFile {
+  Part part = Part::look;
+  std::size_t group = 0;  // of Part::trees
+};
+
+std::size_t group_count(const Camera& camera) { return (cache_tile_count(camera) + kTilesPerGroup - 1) / kTilesPerGroup; }
+
+std::vector<PartFile> parts_of(const Camera& camera) {
+  std::vector<PartFile> parts{{Part::look}, {Part::geometry}, {Part::textures}, {Part::frame}, {Part::paths}};
+  for (std::size_t group = 0; group < group_count(camera); ++group) parts.push_back({Part::trees, group});
+  return parts;
+}
+
+/// The start of a part's file name; the hash of its bytes follows (look.json has none, to be found by people).
+std::string stem(const PartFile& part) {
+  if (part.part == Part::look) return "look.json";
+  std::string name(kPartNames[static_cast<std::size_t>(part.part)]);
+  if (part.part == Part::trees) {
+    char digits[24];
+    std::snprintf(digits, sizeof digits, "/%05zu", part.group);
+    name += digits;
+  }
+  return name + "-";
+}
+
+Bytes encode(const PartFile& part, const CacheContent& content, const CacheIdentity& identity) {
+  switch (part.part) {
+    case Part::look: return encode_look(content.document);
+    case Part::geometry: return encode_geometry(content.document, identity);
+    case Part::textures: return encode_textures(*content.document.assets, *content.pyramids, identity);
+    case Part::frame: return encode_frame(content, identity);
+    case Part::paths: return encode_paths(content, identity);
+    case Part::trees: return encode_trees(content, part.group, identity);
+  }
+  return {};
+}
+
+CacheFile write_part(const std::filesystem::path& folder, const PartFile& part, const CacheContent& content,
+                     const CacheIdentity& identity) {
+  const Bytes bytes = encode(part, content, identity);
+  CacheFile file{stem(part), bytes.size(), hash128(bytes)};
+  if (part.part != Part::look) file.name += file.hash + ".rlk";
+  write_file(folder / file.name, bytes);
+  return file;
+}
+
+/// Everything that reading has found out so far.
+struct Reading {
+  std::filesystem::path path;
+  Manifest manifest;
+  CacheContent content;
+  std::shared_ptr<Assets> assets = std::make_shared<Assets>();
+  std::vector<std::size_t> hits_of_path;
+};
+
+void decode(const PartFile& part, BytesView bytes, Reading& reading) {
+  const CacheIdentity& identity = reading.manifest.identity;
+  CacheContent& content = reading.content;
+  switch (part.part) {
+    case Part::look: return decode_look(bytes, content.document);
+    case Part::geometry: return decode_geometry(bytes, identity, content.document, *reading.assets);
+    case Part::textures: return decode_textures(bytes, identity, *reading.assets, *content.pyramids);
+    case Part::frame: return decode_frame(bytes, identity, content);
+    case Part::paths: return decode_paths(bytes, identity, content);
+    case Part::trees: return decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
+  }
+}
+
+const CacheFile& find_file(const Manifest& manifest, const PartFile& part) {
+  const std::string start = stem(part);
+  const auto found = std::find_if(manifest.files.begin(), manifest.files.end(),
+                                  [&](const CacheFile& file) { return file.name.starts_with(start); });
+  check_sound(found != manifest.files.end(), "the manifest names no file " + start);
+  return *found;
+}
+
+/// Reads, verifies and decodes one file.
+CacheAnswer read_part(const PartFile& part, Reading& reading) {
+  CacheAnswer answer{CacheFault::none, stem(part), ""};
+  try {
+    const CacheFile& file = find_file(reading.manifest, part);
+    answer.file = file.name;
+    const Bytes bytes = load_file(reading.path, file);
+    const bool is_sound = hash128(bytes) == file.hash;
+    try {
+      decode(part, bytes, reading);
+    } catch (const CacheDamage& damage) {
+      const bool is_hash_more_telling = part.part == Part::look || damage.fault == CacheFault::other_version;
+      if (is_sound || !is_hash_more_telling) throw;
+    }
+    check_sound(is_sound, "file hash mismatch");
+  } catch (const CacheDamage& damage) {
+    answer.fault = damage.fault;
+    answer.detail = damage.what();
+  }
+  return answer;
+}
+
+/// The answers of parts [first, last), read in parallel, in order.
+std::vector<CacheAnswer> read_parts(std::span<const PartFile> parts, Reading& reading) {
+  std::vector<CacheAnswer> answers(parts.size());
+  parallel_for(parts.size(), [&](std::size_t i) { answers[i] = read_part(parts[i], reading); });
+  return answers;
+}
+
+bool is_sound(const std::vector<CacheAnswer>& answers) {
+  return std::all_of(answers.begin(), answers.end(),
+                     [](const CacheAnswer& answer) { return answer.fault == CacheFault::none; });
+}
+
+/// Reads everything that can be read; the answers that are not `none`, in the order of the files.
+std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Reading& reading) {
+  reading.path = path;
+  try {
+    reading.manifest = load_manifest(path);
+  } catch (const CacheDamage& damage) {
+    const bool has_manifest = damage.fault != CacheFault::missing && damage.what()[0] != '\0';
+    return {{damage.fault, has_manifest ? std::string(kManifestName) : "", damage.what()}};
+  }
+  const Manifest& manifest = reading.manifest;
+  CacheContent& content = reading.content;
+  content.camera = manifest.camera;
+  content.samples = manifest.samples;
+  content.max_depth = manifest.max_depth;
+  content.objects = manifest.objects;
+  content.lights = manifest.lights;
+  content.scene_hash = manifest.identity.scene_hash;
+  content.pyramids = std::make_shared<PyramidStore>();
+  content.document.assets = reading.assets;
+  std::vector<CacheAnswer> findings;
+  if (options_hash(content) != manifest.identity.options_hash)
+    findings.push_back({CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"});
+
+  const std::vector<PartFile> parts = parts_of(content.camera);
+  constexpr std::size_t kFirstTrees = 5;
+  std::vector<CacheAnswer> answers = read_parts(std::span(parts).first(kFirstTrees), reading);
+  if (is_sound(answers)) {
+    for (std::size_t i = 0; i < content.paths.size(); ++i)
+      reading.hits_of_path.push_back(
+          hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), content.lights));
+    const std::size_t tiles = cache_tile_count(content.camera);
+    content.trees.resize(tiles);
+    content.sample_colors.resize(tiles);
+    const auto trees = read_parts(std::span(parts).subspan(kFirstTrees), reading);
+    answers.insert(answers.end(), trees.begin(), trees.end());
+  }
+  std::copy_if(answers.begin(), answers.end(), std::back_inserter(findings),
+               [](const CacheAnswer& answer) { return answer.fault != CacheFault::none; });
+  return findings;
+}
+
+}  // namespace
+
+std::string_view sentence(CacheFault fault) {
+  switch (fault) {
+    case CacheFault::none: return "the cache is sound";
+    case CacheFault::missing: return "there is no cache here";
+    case CacheFault::not_a_cache: return "this is not a relook cache";
+    case CacheFault::other_version: return "the cache was written by another version of relook; preprocess again";
+    case CacheFault::other_scene: return "the cache is of another scene; preprocess again";
+    case CacheFault::other_options: return "the cache is of another camera, resolution or sampling; preprocess again";
+    case CacheFault::truncated: return "the cache is cut short; preprocess again";
+    case CacheFault::damaged: return "the cache is damaged; preprocess again";
+  }
+  return "";
+}
+
+std::string options_hash(const CacheContent& content) {
+  const Json options{{"camera", camera_json(content.camera)},
+                     {"samples", content.samples},
+                     {"max_depth", content.max_depth}};
+  return hash128(bytes_of(options.dump()));
+}
+
+void refuse_foreign_folder(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return;
+  if (!std::filesystem::is_directory(path, error)) throw InputError(path.string(), "", "exists and is not a folder");
+  if (!std::filesystem::is_empty(path, error) && !looks_like_cache(path))
+    throw InputError(path.string(), "", "exists and is not a cache: not overwritten");
+}
+
+void write_cache(const std::filesystem::path& path, const CacheContent& content) {
+  refuse_foreign_folder(path);
+  Manifest manifest;
+  manifest.identity = {content.scene_hash, options_hash(content)};
+  manifest.camera = content.camera;
+  manifest.samples = content.samples;
+  manifest.max_depth = content.max_depth;
+  manifest.objects = content.objects;
+  manifest.lights = content.lights;
+
+  StagedFolder folder(path);
+  make_folders(folder.path() / kPartNames[static_cast<std::size_t>(Part::trees)]);
+  const std::vector<PartFile> parts = parts_of(content.camera);
+  manifest.files.resize(parts.size());
+  parallel_for(parts.size(), [&](std::size_t i) {
+    manifest.files[i] = write_part(folder.path(), parts[i], content, manifest.identity);
+  });
+  std::sort(manifest.files.begin(), manifest.files.end(),
+            [](const CacheFile& a, const CacheFile& b) { return a.name < b.name; });
+  write_file(folder.path() / kManifestName, manifest_text(manifest));
+  folder.publish();
+}
+
+CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content) {
+  Reading reading;
+  const std::vector<CacheAnswer> findings = read_everything(path, reading);
+  if (!findings.empty()) return findings.front();
+  content = std::move(reading.content);
+  return {};
+}
+
+CacheReport check_cache(const std::filesystem::path& path) {
+  Reading reading;
+  CacheReport report;
+  const std::vector<CacheAnswer> faults = read_everything(path, reading);
+  if (!faults.empty()) report.worst = faults.front();
+  for (const CacheAnswer& fault : faults) {
+    std::string line = fault.file;
+    if (!line.empty()) line += ": ";
+    report.findings.push_back(line + (fault.detail.empty() ? std::string(sentence(fault.fault)) : fault.detail));
+  }
+  if (report.worst.fault == CacheFault::missing || report.worst.fault == CacheFault::not_a_cache) return report;
+
+  std::set<std::string> known{std::string(kManifestName)};
+  for (const CacheFile& file : reading.manifest.files) known.insert(file.name);
+  std::error_code error;
+  for (auto entry = std::filesystem::recursive_directory_iterator(path, error);
+       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
+    if (entry->is_directory(error)) continue;
+    ++report.files;
+    report.bytes += entry->is_regular_file(error) ? entry->file_size(error) : 0;
+    const std::string name = entry->path().lexically_relative(path).generic_string();
+    if (reading.manifest.files.empty() || known.contains(name)) continue;
+    report.findings.push_back(printable(name) + ": not a file of this cache");
+    if (report.worst.fault == CacheFault::none)
+      report.worst = {CacheFault::damaged, printable(name), "not a file of this cache"};
+  }
+  return report;
+}
+
+CacheAnswer read_manifest(const std::filesystem::path& path, Json& manifest) {
+  try {
+    Json document;
+    static_cast<void>(load_manifest(path, &document));
+    manifest = std::move(document);
+    return {};
+  } catch (const CacheDamage& damage) {
+    return {damage.fault, damage.what()[0] == '\0' ? "" : std::string(kManifestName), damage.what()};
+  }
+}
+
+}  // namespace relook

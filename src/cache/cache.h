@@ -1,0 +1,67 @@
+// A cache directory as a whole: what preprocess publishes and replay reads. Self-contained and immutable; the format is
+// described in FORMAT.md beside this file.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "scene/image.h"
+#include "scene/look.h"
+#include "trace/ray_path.h"
+#include "trace/ray_tree.h"
+
+namespace relook {
+
+/// Everything a replay needs. Plain data; the engine turns it into a SceneState and an Image and back.
+struct CacheContent {
+  LookDocument document;   // with meshes and encoded images
+  std::shared_ptr<PyramidStore> pyramids;
+  Camera camera;
+  std::uint32_t samples = 1, max_depth = 6;
+  std::string scene_hash;  // XXH3-128 over the scene file's bytes and the look patch
+  std::uint32_t objects = 0, lights = 0;         // of the compiled scene: all slots; living lights
+  std::vector<Rgba> frame;                       // [height * width]
+  PathTable paths;
+  std::vector<TileTrees> trees;                  // [tiles]
+  std::vector<std::vector<Rgba>> sample_colors;  // [tiles][samples]
+};
+
+/// Why a directory cannot be used as a cache. Each has one sentence.
+enum class CacheFault { none, missing, not_a_cache, other_version, other_scene, other_options, truncated, damaged };
+[[nodiscard]] std::string_view sentence(CacheFault fault);
+
+struct CacheAnswer {
+  CacheFault fault = CacheFault::none;
+  std::string file;    // which file of the cache, relative
+  std::string detail;  // what was looked at: "block hash mismatch in section hits"
+};
+
+/// Throws InputError when something other than a cache or an empty folder is at `path`: it would not be replaced.
+void refuse_foreign_folder(const std::filesystem::path& path);
+
+/// Writes to a temporary folder beside `path` and publishes by rename; an existing cache at `path` is replaced whole, an
+/// existing folder that is not a cache is refused (InputError). Bytes do not depend on the thread count. Throws IoError,
+/// ResourceError; on failure nothing remains.
+void write_cache(const std::filesystem::path& path, const CacheContent& content);
+
+/// Reads and verifies every hash and every index. On any fault `content` is untouched.
+[[nodiscard]] CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content);
+
+/// Every byte and every invariant; one line per finding, empty if the cache is sound. Goes on after the first fault.
+struct CacheReport {
+  CacheAnswer worst;
+  std::vector<std::string> findings;
+  std::uint64_t files = 0, bytes = 0;
+};
+[[nodiscard]] CacheReport check_cache(const std::filesystem::path& path);
+
+/// XXH3-128 of the camera, the resolution and the sampling options.
+[[nodiscard]] std::string options_hash(const CacheContent& content);
+
+/// The manifest alone (for inspect): JSON with version, hashes, options, files and sizes.
+[[nodiscard]] CacheAnswer read_manifest(const std::filesystem::path& path, Json& manifest);
+
+}  // namespace relook

@@ -1,0 +1,203 @@
+#include "cache/container.h"
+
+#include <zstd.h>
+
+#include <algorithm>
+#include <bit>
+#include <new>
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace relook {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "cache files are little-endian");
+
+constexpr std::string_view kMagic = "RLKCACHE";
+constexpr std::size_t kHashDigits = 32, kNameBytes = 24;
+constexpr std::size_t kHeaderBytes = 16 + 2 * kHashDigits, kEntryBytes = kNameBytes + 2 * 4 + 4 * 8;
+constexpr std::uint32_t kMostSections = 4096;
+constexpr std::uint32_t kLargestStride = 64;
+constexpr int kCompressionLevel = 1;
+enum Codec : std::uint32_t { kRaw = 0, kZstd = 1 };
+
+template <class T>
+void append(Bytes& out, T value) {
+  const auto bytes = std::as_bytes(std::span<const T>(&value, 1));
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+template <class T>
+T value_at(BytesView bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+/// Byte k of every value together: high bytes of floats and indices repeat, low ones do not.
+void group_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
+  const std::size_t count = in.size() / stride;
+  for (std::size_t k = 0; k < stride; ++k)
+    for (std::size_t i = 0; i < count; ++i) *out++ = in[i * stride + k];
+}
+
+void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
+  const std::size_t count = in.size() / stride;
+  const std::byte* next = in.data();
+  for (std::size_t k = 0; k < stride; ++k)
+    for (std::size_t i = 0; i < count; ++i) out[i * stride + k] = *next++;
+}
+
+}  // namespace
+
+void ContainerWriter::add(std::string_view name, BytesView raw, std::uint32_t stride) {
+  require(name.size() < kNameBytes && stride >= 1 && stride <= kLargestStride && raw.size() % stride == 0,
+          "a section has a short name and whole values");
+  Section section{std::string(name), kRaw, stride, raw.size(), Bytes(raw.begin(), raw.end())};
+  if (stride > 1) group_bytes(raw, stride, section.stored.data());
+  Bytes packed(ZSTD_compressBound(raw.size()));
+  const std::size_t packed_size =
+      ZSTD_compress(packed.data(), packed.size(), section.stored.data(), section.stored.size(), kCompressionLevel);
+  if (ZSTD_isError(packed_size) != 0) throw std::bad_alloc();
+  if (packed_size < raw.size()) {
+    packed.resize(packed_size);
+    section.stored = std::move(packed);
+    section.codec = kZstd;
+  }
+  sections_.push_back(std::move(section));
+}
+
+Bytes ContainerWriter::finish(const CacheIdentity& identity) const {
+  require(identity.scene_hash.size() == kHashDigits && identity.options_hash.size() == kHashDigits,
+          "hashes are 32 digits");
+  Bytes file;
+  std::uint64_t offset = kHeaderBytes + sections_.size() * kEntryBytes + sizeof(std::uint64_t);
+  std::uint64_t file_bytes = offset;
+  for (const Section& section : sections_) file_bytes += section.stored.size();
+  file.reserve(file_bytes);
+
+  const auto append_text = [&](std::string_view text, std::size_t bytes) {
+    const BytesView view = bytes_of(text);
+    file.insert(file.end(), view.begin(), view.end());
+    file.insert(file.end(), bytes - view.size(), std::byte{0});
+  };
+  append_text(kMagic, kMagic.size());
+  append(file, kCacheFormat);
+  append(file, static_cast<std::uint32_t>(sections_.size()));
+  append_text(identity.scene_hash, kHashDigits);
+  append_text(identity.options_hash, kHashDigits);
+  for (const Section& section : sections_) {
+    append_text(section.name, kNameBytes);
+    append(file, section.codec);
+    append(file, section.stride);
+    append(file, section.raw_bytes);
+    append(file, std::uint64_t{section.stored.size()});
+    append(file, offset);
+    append(file, hash64(section.stored));
+    offset += section.stored.size();
+  }
+  append(file, hash64(file));
+  for (const Section& section : sections_) file.insert(file.end(), section.stored.begin(), section.stored.end());
+  return file;
+}
+
+ContainerReader::ContainerReader(BytesView file, const CacheIdentity& identity) : file_(file) {
+  if (file.size() < kHeaderBytes + sizeof(std::uint64_t))
+    throw CacheDamage(CacheFault::truncated, "the header is cut short");
+  check_sound(text_of(file.first(kMagic.size())) == kMagic, "the first bytes are not RLKCACHE");
+  const auto version = value_at<std::uint32_t>(file, 8);
+  if (version != kCacheFormat)
+    throw CacheDamage(CacheFault::other_version,
+                      "format " + std::to_string(version) + ", this program reads " + std::to_string(kCacheFormat));
+  read_header(identity);
+}
+
+void ContainerReader::read_header(const CacheIdentity& identity) {
+  const auto count = value_at<std::uint32_t>(file_, 12);
+  check_sound(count <= kMostSections, "the header names " + std::to_string(count) + " sections");
+  const std::size_t table_end = kHeaderBytes + std::size_t{count} * kEntryBytes;
+  if (file_.size() < table_end + sizeof(std::uint64_t))
+    throw CacheDamage(CacheFault::truncated, "the section table is cut short");
+  check_sound(value_at<std::uint64_t>(file_, table_end) == hash64(file_.first(table_end)), "header hash mismatch");
+  if (text_of(file_.subspan(16, kHashDigits)) != identity.scene_hash)
+    throw CacheDamage(CacheFault::other_scene, "the header has the hash of another scene");
+  if (text_of(file_.subspan(16 + kHashDigits, kHashDigits)) != identity.options_hash)
+    throw CacheDamage(CacheFault::other_options, "the header has the hash of other options");
+  read_table(count);
+}
+
+void ContainerReader::read_table(std::uint32_t count) {
+  std::uint64_t expected_offset = kHeaderBytes + std::size_t{count} * kEntryBytes + sizeof(std::uint64_t);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const BytesView entry = file_.subspan(kHeaderBytes + std::size_t{i} * kEntryBytes, kEntryBytes);
+    const std::string_view padded = text_of(entry.first(kNameBytes));
+    Section section;
+    section.name = padded.substr(0, padded.find('\0'));
+    section.codec = value_at<std::uint32_t>(entry, 24);
+    section.stride = value_at<std::uint32_t>(entry, 28);
+    section.raw_bytes = value_at<std::uint64_t>(entry, 32);
+    section.stored_bytes = value_at<std::uint64_t>(entry, 40);
+    section.offset = value_at<std::uint64_t>(entry, 48);
+    section.hash = value_at<std::uint64_t>(entry, 56);
+    check_sound(section.codec <= kZstd && section.stride >= 1 && section.stride <= kLargestStride &&
+                    section.raw_bytes % section.stride == 0 && section.offset == expected_offset &&
+                    (section.codec != kRaw || section.raw_bytes == section.stored_bytes),
+                "the table entry of section " + printable(section.name) + " makes no sense");
+    if (section.stored_bytes > file_.size() - section.offset)
+      throw CacheDamage(CacheFault::truncated, "section " + printable(section.name) + " is cut short");
+    expected_offset += section.stored_bytes;
+    sections_.push_back(std::move(section));
+  }
+  check_sound(expected_offset == file_.size(), "bytes after the last section");
+}
+
+bool ContainerReader::has(std::string_view name) const {
+  return std::any_of(sections_.begin(), sections_.end(), [&](const Section& section) { return section.name == name; });
+}
+
+const ContainerReader::Section& ContainerReader::find(std::string_view name) const {
+  const auto found =
+      std::find_if(sections_.begin(), sections_.end(), [&](const Section& section) { return section.name == name; });
+  check_sound(found != sections_.end(), "no section " + std::string(name));
+  return *found;
+}
+
+std::uint64_t ContainerReader::raw_bytes(std::string_view name) const { return find(name).raw_bytes; }
+
+const ContainerReader::Section& ContainerReader::checked(std::string_view name, std::uint64_t count,
+                                                         std::size_t value_bytes) const {
+  const Section& section = find(name);
+  check_sound(section.raw_bytes % value_bytes == 0 && section.raw_bytes / value_bytes == count,
+              "section " + section.name + " does not hold " + std::to_string(count) + " values");
+  return section;
+}
+
+std::string ContainerReader::text(std::string_view name) const {
+  std::string text(raw_bytes(name), '\0');
+  read(find(name), std::as_writable_bytes(std::span<char>(text.data(), text.size())));
+  return text;
+}
+
+void ContainerReader::read(const Section& section, std::span<std::byte> out) const {
+  const BytesView stored = file_.subspan(section.offset, section.stored_bytes);
+  check_sound(hash64(stored) == section.hash, "hash mismatch in section " + section.name);
+  if (section.raw_bytes == 0) return;
+  Bytes unpacked;
+  BytesView grouped = stored;
+  if (section.codec == kZstd) {
+    const bool in_place = section.stride == 1;
+    if (!in_place) unpacked.resize(section.raw_bytes);
+    std::byte* target = in_place ? out.data() : unpacked.data();
+    const std::size_t size = ZSTD_decompress(target, section.raw_bytes, stored.data(), stored.size());
+    check_sound(ZSTD_isError(size) == 0 && size == section.raw_bytes, "section " + section.name + " does not unpack");
+    if (in_place) return;
+    grouped = unpacked;
+  }
+  if (section.stride == 1)
+    std::memcpy(out.data(), grouped.data(), grouped.size());
+  else
+    ungroup_bytes(grouped, section.stride, out.data());
+}
+
+}  // namespace relook

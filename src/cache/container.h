@@ -1,0 +1,102 @@
+// One .rlk file of a cache: a header, a table of sections, the sections (FORMAT.md). Every section carries its hash and
+// its size before compression; a file whose header says another version, scene or options is told apart from a damaged
+// one. The only file pair that sees zstd.
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "base/files.h"
+#include "cache/cache.h"
+
+namespace relook {
+
+/// Layout of a cache directory; a change of any byte's meaning raises it.
+inline constexpr std::uint32_t kCacheFormat = 1;
+
+/// Which cache a file belongs to: XXH3-128 in hexadecimal of the scene and of the options.
+struct CacheIdentity {
+  std::string scene_hash, options_hash;
+};
+
+/// Thrown while a cache is read, turned into a CacheAnswer by read_cache(): never seen outside of cache/.
+struct CacheDamage : std::runtime_error {
+  CacheDamage(CacheFault kind, const std::string& detail) : std::runtime_error(detail), fault(kind) {}
+  CacheFault fault;
+};
+/// Throws CacheDamage{damaged, detail} unless `sound`.
+inline void check_sound(bool sound, const std::string& detail) {
+  if (!sound) throw CacheDamage(CacheFault::damaged, detail);
+}
+
+/// Types whose bytes are their value (Imath's types are, without being trivially copyable).
+template <class T>
+inline constexpr bool is_plain = std::is_standard_layout_v<T> && std::is_trivially_destructible_v<T>;
+
+class ContainerWriter {
+ public:
+  /// Adds a section. `stride`: size of one value; its bytes are grouped by significance before compression.
+  void add(std::string_view name, BytesView raw, std::uint32_t stride = 1);
+  template <class T>
+  void add_column(std::string_view name, const std::vector<T>& values, std::uint32_t stride) {
+    static_assert(is_plain<T>);
+    add(name, std::as_bytes(std::span<const T>(values)), stride);
+  }
+  [[nodiscard]] Bytes finish(const CacheIdentity& identity) const;
+
+ private:
+  struct Section {
+    std::string name;
+    std::uint32_t codec, stride;
+    std::uint64_t raw_bytes;
+    Bytes stored;
+  };
+  std::vector<Section> sections_;
+};
+
+/// A .rlk file in memory, its header and table checked. Every function throws CacheDamage.
+class ContainerReader {
+ public:
+  /// `file` must outlive the reader.
+  ContainerReader(BytesView file, const CacheIdentity& identity);
+
+  [[nodiscard]] bool has(std::string_view name) const;
+  [[nodiscard]] std::uint64_t raw_bytes(std::string_view name) const;
+  /// Number of values of T in a section.
+  template <class T>
+  [[nodiscard]] std::uint64_t count(std::string_view name) const {
+    check_sound(raw_bytes(name) % sizeof(T) == 0, "section " + std::string(name) + " holds a part of a value");
+    return raw_bytes(name) / sizeof(T);
+  }
+  /// The values of a section, which must be exactly `count`.
+  template <class T>
+  [[nodiscard]] std::vector<T> column(std::string_view name, std::uint64_t count) const {
+    static_assert(is_plain<T>);
+    const Section& section = checked(name, count, sizeof(T));
+    std::vector<T> values(count);
+    read(section, std::as_writable_bytes(std::span<T>(values)));
+    return values;
+  }
+  [[nodiscard]] std::string text(std::string_view name) const;
+
+ private:
+  struct Section {
+    std::string name;
+    std::uint32_t codec = 0, stride = 1;
+    std::uint64_t raw_bytes = 0, stored_bytes = 0, offset = 0, hash = 0;
+  };
+  void read_header(const CacheIdentity& identity);
+  void read_table(std::uint32_t count);
+  [[nodiscard]] const Section& find(std::string_view name) const;
+  [[nodiscard]] const Section& checked(std::string_view name, std::uint64_t count, std::size_t value_bytes) const;
+  void read(const Section& section, std::span<std::byte> out) const;
+
+  BytesView file_;
+  std::vector<Section> sections_;
+};
+
+}  // namespace relook

@@ -1,0 +1,211 @@
+#include "cache/image_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+
+namespace relook {
+namespace {
+
+std::pair<std::size_t, std::size_t> tiles_of(std::size_t group, const Camera& camera) {
+  const std::size_t first = group * kTilesPerGroup;
+  return {first, std::min(first + kTilesPerGroup, cache_tile_count(camera))};
+}
+
+struct Rect {
+  std::uint32_t x0, y0, x1, y1;
+};
+Rect tile_rect_of(const Camera& camera, std::size_t tile) {
+  const std::size_t across = (camera.width + kTileSize - 1) / kTileSize;
+  const auto x0 = static_cast<std::uint32_t>(tile % across * kTileSize);
+  const auto y0 = static_cast<std::uint32_t>(tile / across * kTileSize);
+  return {x0, y0, std::min(x0 + kTileSize, camera.width), std::min(y0 + kTileSize, camera.height)};
+}
+
+void check_colors(const std::vector<Rgba>& colors, const char* section) {
+  for (const Rgba& color : colors)
+    check_sound(std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b) && std::isfinite(color.a),
+                std::string("a number that is not finite in section ") + section);
+}
+
+/// Tile by tile, in tile order, the pixels of the frame.
+std::vector<Rgba> pixels_of_tile(const CacheContent& content, std::size_t tile) {
+  const Rect rect = tile_rect_of(content.camera, tile);
+  std::vector<Rgba> pixels;
+  pixels.reserve(cache_tile_samples(content.camera, 1, tile));
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
+    const Rgba* row = content.frame.data() + std::size_t{y} * content.camera.width;
+    pixels.insert(pixels.end(), row + rect.x0, row + rect.x1);
+  }
+  return pixels;
+}
+
+/// At one sample a pixel the frame says it all.
+bool colors_are_pixels(const CacheContent& content, std::size_t first_tile, std::size_t last_tile) {
+  if (content.samples != 1) return false;
+  for (std::size_t tile = first_tile; tile < last_tile; ++tile) {
+    const std::vector<Rgba> pixels = pixels_of_tile(content, tile);
+    const std::vector<Rgba>& colors = content.sample_colors[tile];
+    if (std::memcmp(pixels.data(), colors.data(), pixels.size() * sizeof(Rgba)) != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::size_t cache_tile_count(const Camera& camera) {
+  return std::size_t{(camera.width + kTileSize - 1) / kTileSize} * ((camera.height + kTileSize - 1) / kTileSize);
+}
+
+std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile) {
+  const Rect rect = tile_rect_of(camera, tile);
+  return std::size_t{rect.x1 - rect.x0} * (rect.y1 - rect.y0) * samples;
+}
+
+Bytes encode_frame(const CacheContent& content, const CacheIdentity& identity) {
+  require(content.frame.size() == std::size_t{content.camera.width} * content.camera.height, "the frame is whole");
+  ContainerWriter writer;
+  writer.add_column("pixels", content.frame, sizeof(Rgba));
+  return writer.finish(identity);
+}
+
+Bytes encode_paths(const CacheContent& content, const CacheIdentity& identity) {
+  ContainerWriter writer;
+  writer.add("words", std::as_bytes(content.paths.all_words()), sizeof(std::uint32_t));
+  writer.add("offsets", std::as_bytes(content.paths.all_offsets()), sizeof(std::uint64_t));
+  return writer.finish(identity);
+}
+
+Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheIdentity& identity) {
+  std::vector<std::uint32_t> paths, primitives;
+  std::vector<float> u, v;
+  std::vector<Rgba> colors;
+  const auto [first, last] = tiles_of(group, content.camera);
+  for (std::size_t tile = first; tile < last; ++tile) {
+    const TileTrees& trees = content.trees[tile];
+    require(trees.paths.size() == cache_tile_samples(content.camera, content.samples, tile), "a tile has all samples");
+    for (const PathId path : trees.paths) paths.push_back(path.index());
+    for (const Hit& hit : trees.hits) {
+      primitives.push_back(hit.primitive);
+      u.push_back(hit.u);
+      v.push_back(hit.v);
+    }
+    const std::vector<Rgba>& tile_colors = content.sample_colors[tile];
+    require(tile_colors.size() == trees.paths.size(), "a tile has the colours of all samples");
+    colors.insert(colors.end(), tile_colors.begin(), tile_colors.end());
+  }
+  ContainerWriter writer;
+  writer.add_column("paths", paths, sizeof(std::uint32_t));
+  writer.add_column("primitives", primitives, sizeof(std::uint32_t));
+  writer.add_column("u", u, sizeof(float));
+  writer.add_column("v", v, sizeof(float));
+  if (!colors_are_pixels(content, first, last)) writer.add_column("colors", colors, sizeof(Rgba));
+  return writer.finish(identity);
+}
+
+void decode_frame(BytesView file, const CacheIdentity& identity, CacheContent& content) {
+  const ContainerReader reader(file, identity);
+  content.frame = reader.column<Rgba>("pixels", std::uint64_t{content.camera.width} * content.camera.height);
+  check_colors(content.frame, "pixels");
+}
+
+void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& content) {
+  const ContainerReader reader(file, identity);
+  std::vector<std::uint32_t> words = reader.column<std::uint32_t>("words", reader.count<std::uint32_t>("words"));
+  std::vector<std::uint64_t> offsets = reader.column<std::uint64_t>("offsets", reader.count<std::uint64_t>("offsets"));
+  check_sound(!offsets.empty() && offsets.front() == 0 && offsets.back() == words.size() &&
+                  std::is_sorted(offsets.begin(), offsets.end(), std::less_equal<>()),
+              "the offsets of section offsets do not increase");
+  content.paths = PathTable::from_columns(std::move(words), std::move(offsets));
+  for (std::size_t i = 0; i < content.paths.size(); ++i) {
+    const auto path = content.paths.words(PathId(static_cast<std::uint32_t>(i)));
+    const std::vector<std::string> broken = broken_invariants(path, content.objects, content.lights);
+    check_sound(broken.empty(), broken.empty() ? "" : "path " + std::to_string(i) + ": " + broken.front());
+  }
+}
+
+namespace {
+
+/// Cuts the columns of a group into tiles, from the front.
+struct GroupColumns {
+  std::vector<std::uint32_t> paths, primitives;
+  std::vector<float> u, v;
+  std::vector<Rgba> colors;
+  std::size_t next_sample = 0, next_hit = 0;
+
+  TileTrees take_tile(std::size_t samples, std::span<const std::size_t> hits_of_path) {
+    TileTrees trees;
+    trees.paths.reserve(samples);
+    trees.first_hit.reserve(samples + 1);
+    trees.first_hit.push_back(0);
+    std::size_t hits = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+      const std::uint32_t path = paths[next_sample++];
+      trees.paths.emplace_back(path);
+      hits += hits_of_path[path];
+      trees.first_hit.push_back(static_cast<std::uint32_t>(hits));
+    }
+    trees.hits.reserve(hits);
+    for (std::size_t i = 0; i < hits; ++i, ++next_hit) trees.hits.push_back({primitives[next_hit], u[next_hit], v[next_hit]});
+    return trees;
+  }
+};
+
+void check_weights(const std::vector<float>& weights, const char* section) {
+  constexpr float kLargestWeight = 2;
+  for (const float weight : weights)
+    check_sound(std::abs(weight) <= kLargestWeight, std::string("a weight beyond a triangle in section ") + section);
+}
+
+GroupColumns read_columns(const ContainerReader& reader, std::uint64_t samples, bool has_colors,
+                          std::span<const std::size_t> hits_of_path) {
+  GroupColumns columns;
+  columns.paths = reader.column<std::uint32_t>("paths", samples);
+  std::uint64_t hits = 0;
+  for (const std::uint32_t path : columns.paths) {
+    check_sound(path < hits_of_path.size(), "a path that does not exist in section paths");
+    hits += hits_of_path[path];
+  }
+  check_sound(hits <= std::numeric_limits<std::uint32_t>::max(), "more hits than a tile group can have");
+  columns.primitives = reader.column<std::uint32_t>("primitives", hits);
+  columns.u = reader.column<float>("u", hits);
+  columns.v = reader.column<float>("v", hits);
+  check_weights(columns.u, "u");
+  check_weights(columns.v, "v");
+  if (has_colors) {
+    columns.colors = reader.column<Rgba>("colors", samples);
+    check_colors(columns.colors, "colors");
+  }
+  return columns;
+}
+
+}  // namespace
+
+void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
+                  std::span<const std::size_t> hits_of_path, CacheContent& content) {
+  const ContainerReader reader(file, identity);
+  const auto [first, last] = tiles_of(group, content.camera);
+  std::uint64_t samples = 0;
+  for (std::size_t tile = first; tile < last; ++tile)
+    samples += cache_tile_samples(content.camera, content.samples, tile);
+  const bool has_colors = reader.has("colors");
+  check_sound(has_colors || content.samples == 1, "no section colors");
+  GroupColumns columns = read_columns(reader, samples, has_colors, hits_of_path);
+  for (std::size_t tile = first; tile < last; ++tile) {
+    const std::size_t tile_samples = cache_tile_samples(content.camera, content.samples, tile);
+    const auto first_color = static_cast<std::ptrdiff_t>(columns.next_sample);
+    content.trees[tile] = columns.take_tile(tile_samples, hits_of_path);
+    if (!has_colors)
+      content.sample_colors[tile] = pixels_of_tile(content, tile);
+    else
+      content.sample_colors[tile].assign(columns.colors.begin() + first_color,
+                                         columns.colors.begin() + static_cast<std::ptrdiff_t>(columns.next_sample));
+  }
+}
+
+}  // namespace relook

@@ -1,0 +1,29 @@
+// The image side of a cache as files: the base frame, ray paths, and ray trees in groups of tiles. Each encode_ has its
+// decode_, which checks every index and count and throws CacheDamage, so that loops over them need no checks.
+#pragma once
+#include <cstdint>
+#include <span>
+
+#include "cache/cache.h"
+#include "cache/container.h"
+
+namespace relook {
+
+/// Tiles of one trees/ file.
+inline constexpr std::size_t kTilesPerGroup = 32;
+
+[[nodiscard]] std::size_t cache_tile_count(const Camera& camera);
+/// Samples of a tile of the image.
+[[nodiscard]] std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile);
+
+[[nodiscard]] Bytes encode_frame(const CacheContent& content, const CacheIdentity& identity);
+[[nodiscard]] Bytes encode_paths(const CacheContent& content, const CacheIdentity& identity);
+[[nodiscard]] Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheIdentity& identity);
+
+void decode_frame(BytesView file, const CacheIdentity& identity, CacheContent& content);
+void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& content);
+/// `hits_of_path`: hit_count() of every path. content.trees and content.sample_colors have a slot for every tile.
+void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
+                  std::span<const std::size_t> hits_of_path, CacheContent& content);
+
+}  // namespace relook

@@ -1,0 +1,43 @@
+// MANIFEST.json: what a cache directory must consist of, written last. It carries its own hash and is compared with its
+// canonical text, so that no byte of it can change unnoticed.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+#include "cache/cache.h"
+#include "cache/container.h"
+
+namespace relook {
+
+inline constexpr std::string_view kManifestName = "MANIFEST.json";
+
+struct CacheFile {
+  std::string name;  // relative: "look.json", "trees/00000-<hash>.rlk"
+  std::uint64_t bytes = 0;
+  std::string hash;  // XXH3-128
+};
+
+struct Manifest {
+  CacheIdentity identity;
+  Camera camera;
+  std::uint32_t samples = 1, max_depth = 6;
+  std::uint32_t objects = 0, lights = 0;
+  std::vector<CacheFile> files;  // by name
+};
+
+[[nodiscard]] Json camera_json(const Camera& camera);
+[[nodiscard]] std::string manifest_text(const Manifest& manifest);
+
+/// Reads and checks MANIFEST.json of a cache directory. Throws CacheDamage.
+[[nodiscard]] Manifest load_manifest(const std::filesystem::path& cache, Json* document = nullptr);
+
+/// Reads one file of a cache and compares it with its entry. Throws CacheDamage.
+[[nodiscard]] Bytes load_file(const std::filesystem::path& cache, const CacheFile& file);
+
+/// True for a directory that is a cache, sound or not: what preprocess may replace.
+[[nodiscard]] bool looks_like_cache(const std::filesystem::path& path);
+
+}  // namespace relook

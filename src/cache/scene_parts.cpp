@@ -1,0 +1,238 @@
+#include "cache/scene_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/json.h"
+
+namespace relook {
+namespace {
+
+constexpr std::int64_t kMostValues = std::int64_t{1} << 40;
+constexpr float kLargestNumber = 1e18F;
+
+template <class T>
+void check_numbers(const std::vector<T>& values, const char* section) {
+  static_assert(sizeof(T) % sizeof(float) == 0);
+  const std::span<const float> numbers(reinterpret_cast<const float*>(values.data()),
+                                       values.size() * (sizeof(T) / sizeof(float)));
+  for (const float number : numbers)
+    check_sound(std::abs(number) <= kLargestNumber, std::string("a number that is not finite in section ") + section);
+}
+
+/// Hands out the values of a column from the front.
+template <class T>
+class Cutter {
+ public:
+  Cutter(const ContainerReader& reader, const char* section)
+      : section_(section), values_(reader.column<T>(section, reader.count<T>(section))) {
+    if constexpr (sizeof(T) % sizeof(float) == 0 && !std::is_same_v<T, std::array<std::uint32_t, 3>>)
+      check_numbers(values_, section);
+  }
+  std::vector<T> take(std::uint64_t count) {
+    check_sound(count <= values_.size() - next_, "section " + section_ + " is too short");
+    const auto first = values_.begin() + static_cast<std::ptrdiff_t>(next_);
+    next_ += count;
+    return {first, first + static_cast<std::ptrdiff_t>(count)};
+  }
+  void finish() const { check_sound(next_ == values_.size(), "section " + section_ + " is too long"); }
+
+ private:
+  std::string section_;
+  std::vector<T> values_;
+  std::size_t next_ = 0;
+};
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+Json mesh_entry(const Mesh& mesh) {
+  return {{"name", mesh.name},
+          {"primitive", mesh.primitive},
+          {"positions", mesh.positions.size()},
+          {"triangles", mesh.triangles.size()},
+          {"normals", mesh.normals.size()},
+          {"tangents", mesh.tangents.size()},
+          {"uv0", mesh.uv[0].size()},
+          {"uv1", mesh.uv[1].size()},
+          {"colors", mesh.colors.size()}};
+}
+
+Json names_entry(const LookDocument& document) {
+  Json order = Json::object();
+  for (std::size_t s = 0; s < kSectionCount; ++s)
+    order[std::string(section_name(static_cast<Section>(s)))] = document.order[s];
+  Json instances = Json::array();
+  for (const auto& [node, matrices] : document.instances) instances.push_back({{"node", node}, {"count", matrices.size()}});
+  Json groups = Json::object();
+  for (const auto& [name, ids] : document.assets->mesh_primitives) {
+    Json& group = groups[name] = Json::array();
+    for (const MeshId id : ids) group.push_back(id.index());
+  }
+  Json meshes = Json::array();
+  for (const Mesh& mesh : document.assets->meshes) meshes.push_back(mesh_entry(mesh));
+  return {{"order", std::move(order)},
+          {"instances", std::move(instances)},
+          {"groups", std::move(groups)},
+          {"meshes", std::move(meshes)},
+          {"cameras", document.cameras},
+          {"file", document.file}};
+}
+
+/// Runs a reader of JSON that this program has written: what does not fit is damage, not bad input.
+template <class Read>
+auto read_own_json(Read read) {
+  try {
+    return read();
+  } catch (const InputError& fault) {
+    throw CacheDamage(CacheFault::damaged, fault.what());
+  }
+}
+
+std::uint64_t size_at(const JsonView& view, const char* key) {
+  return static_cast<std::uint64_t>(view.at(key).integer(0, kMostValues));
+}
+
+struct GeometryColumns {
+  explicit GeometryColumns(const ContainerReader& reader)
+      : positions(reader, "positions"), triangles(reader, "triangles"), normals(reader, "normals"),
+        tangents(reader, "tangents"), uv0(reader, "uv0"), uv1(reader, "uv1"), colors(reader, "colors"),
+        bounds(reader, "bounds"), min_alpha(reader, "min_alpha") {}
+  void finish() const {
+    positions.finish(), triangles.finish(), normals.finish(), tangents.finish(), uv0.finish(), uv1.finish();
+    colors.finish(), bounds.finish(), min_alpha.finish();
+  }
+
+  Cutter<Point> positions;
+  Cutter<std::array<std::uint32_t, 3>> triangles;
+  Cutter<Normal> normals;
+  Cutter<Imath::V4f> tangents;
+  Cutter<Uv> uv0, uv1;
+  Cutter<Rgba> colors;
+  Cutter<Point> bounds;
+  Cutter<float> min_alpha;
+};
+
+Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
+  Mesh mesh;
+  mesh.name = entry.at("name").text();
+  mesh.primitive = static_cast<std::uint32_t>(entry.at("primitive").integer(0, 0xFFFFFFFF));
+  mesh.positions = columns.positions.take(size_at(entry, "positions"));
+  mesh.triangles = columns.triangles.take(size_at(entry, "triangles"));
+  mesh.normals = columns.normals.take(size_at(entry, "normals"));
+  mesh.tangents = columns.tangents.take(size_at(entry, "tangents"));
+  mesh.uv = {columns.uv0.take(size_at(entry, "uv0")), columns.uv1.take(size_at(entry, "uv1"))};
+  mesh.colors = columns.colors.take(size_at(entry, "colors"));
+  const std::vector<Point> corners = columns.bounds.take(2);
+  mesh.bounds = Box(corners[0], corners[1]);
+  mesh.min_alpha = columns.min_alpha.take(1)[0];
+
+  for (const std::size_t size : {mesh.normals.size(), mesh.tangents.size(), mesh.uv[0].size(), mesh.uv[1].size(),
+                                 mesh.colors.size()})
+    check_sound(size == 0 || size == mesh.positions.size(), "columns of mesh " + printable(mesh.name) + " differ in length");
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      check_sound(vertex < mesh.positions.size(), "a vertex that does not exist in mesh " + printable(mesh.name));
+  return mesh;
+}
+
+void read_names(const JsonView& names, LookDocument& document, Assets& assets) {
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const JsonView order = names.at("order").at(section_name(static_cast<Section>(s)));
+    order.require_array();
+    for (std::size_t i = 0; i < order.size(); ++i) document.order[s].push_back(order.at(i).text());
+  }
+  const JsonView groups = names.at("groups");
+  groups.require_object();
+  for (const auto& [name, unused] : groups.value().items()) {
+    const JsonView group = groups.at(name);
+    group.require_array();
+    std::vector<MeshId>& ids = assets.mesh_primitives[name];
+    for (std::size_t i = 0; i < group.size(); ++i)
+      ids.emplace_back(static_cast<std::uint32_t>(
+          group.at(i).integer(0, static_cast<std::int64_t>(assets.meshes.size()) - 1)));
+  }
+  names.at("cameras").require_object();
+  document.cameras = names.at("cameras").value();
+  document.file = names.at("file").text();
+}
+
+void read_instances(const JsonView& names, Cutter<Transform> matrices, LookDocument& document) {
+  const JsonView instances = names.at("instances");
+  instances.require_array();
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    const JsonView entry = instances.at(i);
+    document.instances[entry.at("node").text()] = matrices.take(size_at(entry, "count"));
+  }
+  matrices.finish();
+}
+
+}  // namespace
+
+Bytes encode_look(const LookDocument& document) {
+  const std::string text = document.look.dump(1) + "\n";
+  const BytesView bytes = bytes_of(text);
+  return {bytes.begin(), bytes.end()};
+}
+
+Bytes encode_geometry(const LookDocument& document, const CacheIdentity& identity) {
+  Mesh all;
+  std::vector<Point> bounds;
+  std::vector<float> min_alpha;
+  for (const Mesh& mesh : document.assets->meshes) {
+    append(all.positions, mesh.positions);
+    append(all.triangles, mesh.triangles);
+    append(all.normals, mesh.normals);
+    append(all.tangents, mesh.tangents);
+    append(all.uv[0], mesh.uv[0]);
+    append(all.uv[1], mesh.uv[1]);
+    append(all.colors, mesh.colors);
+    bounds.push_back(mesh.bounds.min);
+    bounds.push_back(mesh.bounds.max);
+    min_alpha.push_back(mesh.min_alpha);
+  }
+  std::vector<Transform> instances;
+  for (const auto& [node, matrices] : document.instances) append(instances, matrices);
+
+  ContainerWriter writer;
+  writer.add("names", bytes_of(names_entry(document).dump()));
+  writer.add_column("positions", all.positions, 4);
+  writer.add_column("triangles", all.triangles, 4);
+  writer.add_column("normals", all.normals, 4);
+  writer.add_column("tangents", all.tangents, 4);
+  writer.add_column("uv0", all.uv[0], 4);
+  writer.add_column("uv1", all.uv[1], 4);
+  writer.add_column("colors", all.colors, 4);
+  writer.add_column("bounds", bounds, 4);
+  writer.add_column("min_alpha", min_alpha, 4);
+  writer.add_column("instances", instances, 4);
+  return writer.finish(identity);
+}
+
+void decode_look(BytesView file, LookDocument& document) {
+  document.look = read_own_json([&] { return parse_json(text_of(file), ""); });
+  check_sound(document.look.is_object(), "the look document is no object");
+}
+
+void decode_geometry(BytesView file, const CacheIdentity& identity, LookDocument& document, Assets& assets) {
+  const ContainerReader reader(file, identity);
+  const std::string text = reader.text("names");
+  read_own_json([&] {
+    const Json json = parse_json(text, "");
+    const JsonView names(json, "");
+    GeometryColumns columns(reader);
+    const JsonView meshes = names.at("meshes");
+    meshes.require_array();
+    for (std::size_t i = 0; i < meshes.size(); ++i) assets.meshes.push_back(read_mesh(meshes.at(i), columns));
+    columns.finish();
+    read_names(names, document, assets);
+    read_instances(names, Cutter<Transform>(reader, "instances"), document);
+  });
+}
+
+}  // namespace relook

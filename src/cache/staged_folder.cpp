@@ -1,0 +1,74 @@
+#include "cache/staged_folder.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/files.h"
+
+namespace relook {
+namespace {
+
+constexpr int kMostAttempts = 1000;
+
+std::filesystem::path without_trailing_slash(const std::filesystem::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
+}  // namespace
+
+StagedFolder::StagedFolder(const std::filesystem::path& final_path) {
+  std::error_code ignored;
+  final_ = std::filesystem::weakly_canonical(without_trailing_slash(final_path), ignored);
+  if (final_.empty() || !final_.has_filename()) throw IoError(final_path.string(), "no folder can be written here");
+  make_folders(final_.parent_path());
+  const std::string stem = "." + final_.filename().string() + ".relook-" + std::to_string(getpid()) + "-";
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    staged_ = final_.parent_path() / (stem + std::to_string(attempt));
+    if (mkdir(staged_.c_str(), 0777) == 0) return;
+    if (errno == ENOSPC || errno == EDQUOT) throw ResourceError(final_path.string(), std::strerror(errno));
+    if (errno != EEXIST) throw IoError(final_path.string(), std::string("cannot be written: ") + std::strerror(errno));
+  }
+  throw IoError(final_path.string(), "too many unfinished folders beside it");
+}
+
+StagedFolder::~StagedFolder() {
+  std::error_code ignored;
+  if (!staged_.empty()) std::filesystem::remove_all(staged_, ignored);
+}
+
+void StagedFolder::publish() {
+  sync_folder(staged_);
+  int error = 0;
+  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+    const bool is_new = rename(staged_.c_str(), final_.c_str()) == 0;
+    error = errno;
+    const bool is_exchanged = !is_new && (error == ENOTEMPTY || error == EEXIST) &&
+                              renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0;
+    if (is_new) staged_.clear();
+    if (is_new || is_exchanged) return sync_folder(final_.parent_path());
+    if (error != ENOTEMPTY && error != EEXIST) break;
+    error = errno;
+    const bool cannot_exchange = error == EINVAL || error == ENOSYS;
+    if (cannot_exchange && replace_in_two_steps()) return sync_folder(final_.parent_path());
+    if (!cannot_exchange && error != ENOENT) break;
+  }
+  throw IoError(final_.string(), std::string("cannot be published: ") + std::strerror(error));
+}
+
+bool StagedFolder::replace_in_two_steps() {
+  const std::filesystem::path aside = staged_.string() + "-old";
+  if (rename(final_.c_str(), aside.c_str()) != 0) return false;
+  const bool is_published = rename(staged_.c_str(), final_.c_str()) == 0;
+  if (is_published) staged_.clear();
+  std::error_code ignored;
+  if (is_published || rename(aside.c_str(), final_.c_str()) != 0) std::filesystem::remove_all(aside, ignored);
+  return is_published;
+}
+
+}  // namespace relook

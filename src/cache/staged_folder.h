@@ -1,0 +1,28 @@
+// A folder that is filled under a temporary name beside its final one and appears there whole, or not at all.
+#pragma once
+#include <filesystem>
+
+namespace relook {
+
+class StagedFolder {
+ public:
+  /// Creates the temporary folder beside `final_path`, whose parents are created as needed. Throws IoError, ResourceError.
+  explicit StagedFolder(const std::filesystem::path& final_path);
+  /// Removes whatever was not published.
+  ~StagedFolder();
+  StagedFolder(const StagedFolder&) = delete;
+  StagedFolder& operator=(const StagedFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return staged_; }
+  /// Moves the folder to its final name. A folder already there is exchanged with it in one step, then removed, so that
+  /// the final name always has the old folder or the new one. Throws IoError.
+  void publish();
+
+ private:
+  /// For file systems that cannot exchange two names: for a moment there is no folder under the final one.
+  bool replace_in_two_steps();
+
+  std::filesystem::path final_, staged_;
+};
+
+}  // namespace relook

@@ -1,0 +1,38 @@
+// The parameters of a material, light and scene that colour expressions read: what the leaves of a colour tree point to
+// (paper 2.1). Masks of fields tell which expressions an edit can change.
+#pragma once
+#include <cstdint>
+
+#include "scene/scene.h"
+
+namespace relook {
+
+/// Fields of a material. The texture slots follow as kFirstSlotField + slot.
+enum class Field : std::uint8_t {
+  model, alpha_mode, base_color, metallic, roughness, normal_scale, occlusion_strength, emissive, emissive_strength,
+  ior, transmission, thickness, attenuation_distance, attenuation_color, specular, specular_color,
+  clearcoat, clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness,
+  phong_ambient, phong_diffuse, phong_specular, shininess, reflection, refraction, transparency,
+  count
+};
+inline constexpr unsigned kFirstSlotField = static_cast<unsigned>(Field::count);
+static_assert(kFirstSlotField + kSlotCount <= 64);
+
+using FieldMask = std::uint64_t;
+[[nodiscard]] constexpr FieldMask mask_of(Field field) { return FieldMask{1} << static_cast<unsigned>(field); }
+[[nodiscard]] constexpr FieldMask mask_of(Slot slot) {
+  return FieldMask{1} << (kFirstSlotField + static_cast<unsigned>(slot));
+}
+
+/// Fields whose values differ.
+[[nodiscard]] FieldMask changed_fields(const Material& a, const Material& b);
+/// Component `component` of a numeric field (scalars: component 0).
+[[nodiscard]] float field_value(const Material& material, Field field, unsigned component);
+
+/// Numbers of a light: colour parameters and placement.
+enum class LightField : std::uint8_t {
+  red, green, blue, intensity, inverse_range, cos_inner, cos_outer, x, y, z, dx, dy, dz
+};
+[[nodiscard]] float field_value(const Light& light, LightField field);
+
+}  // namespace relook

@@ -1,0 +1,37 @@
+// Illumination models as colour expressions: what SHADING.md defines, written once for every pixel. The expression of a
+// node depends on its material's values of structure, on how the ray met it, on the visible lights and on its branches.
+#pragma once
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include "color/program.h"
+#include "trace/ray_path.h"
+
+namespace relook {
+
+enum class NodeKind : std::uint8_t { surface, filter, environment };
+
+/// A light that reaches a node: its place in the light order, and whether transparent surfaces stand in between.
+struct VisibleLight {
+  LightId light;
+  std::uint32_t order = 0;
+  bool filtered = false;
+  auto operator<=>(const VisibleLight&) const = default;
+};
+
+/// Nodes with equal keys share one program.
+struct NodeKey {
+  NodeKind kind = NodeKind::environment;
+  MaterialId material;           // none for the environment
+  bool inside = false;
+  bool vertex_colors = false;
+  bool interface_only = false;   // the inner side of a volume
+  std::uint8_t children = 0;     // bit per Branch
+  std::vector<VisibleLight> lights;
+  auto operator<=>(const NodeKey&) const = default;
+};
+
+[[nodiscard]] ColorProgram build_program(const Scene& scene, const NodeKey& key);
+
+}  // namespace relook

@@ -1,0 +1,213 @@
+#include "color/shade.h"
+
+#include <algorithm>
+#include <mutex>
+#include <unordered_map>
+
+#include "base/hash.h"
+
+namespace relook {
+namespace {
+
+NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside) {
+  const RayObject& object = scene.object(id);
+  NodeKey key;
+  key.kind = NodeKind::surface;
+  key.material = scene.scene().object(id).material;
+  key.inside = inside;
+  key.vertex_colors = !object.mesh->colors.empty();
+  key.interface_only = object.optics.volume && inside;
+  return key;
+}
+
+NodeKey filter_key(const RayScene& scene, ObjectId id) {
+  // The side is left open here: it depends on the hit, not on the path.
+  NodeKey key = surface_key(scene, id, false);
+  key.kind = NodeKind::filter;
+  return key;
+}
+
+void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state) {
+  if (state == ShadowState::open || state == ShadowState::filtered)
+    key.lights.push_back({light, order, state == ShadowState::filtered});
+}
+
+NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node) {
+  if (node.object.is_none()) return {};
+  NodeKey key = surface_key(scene, node.object, node.point.inside);
+  for (std::size_t b = 0; b < kBranches; ++b)
+    if (node.child[b] != kNoNode) key.children = static_cast<std::uint8_t>(key.children | 1U << b);
+  const auto& order = scene.scene().light_order;
+  for (std::uint32_t light = 0; light < order.size(); ++light)
+    note_light(key, order[light], light, block.lights[node.first_light + light].state);
+  return key;
+}
+
+/// A short form of NodeKey that is cheap to make and compare: (material, flags), light states.
+struct Signature {
+  std::uint64_t surface = 0, lights = 0;
+  bool operator==(const Signature&) const = default;
+};
+struct SignatureHash {
+  std::size_t operator()(const Signature& s) const { return (s.surface * 0x9E3779B97F4A7C15ULL) ^ (s.lights * 0xC2B2AE3D27D4EB4FULL); }
+};
+
+/// Gives nodes dense program numbers within one block.
+class Programs {
+ public:
+  Programs(const RayScene& scene, const TreeBlock& block, ProgramTable& table) : scene_(scene), block_(block), table_(table) {}
+
+  std::uint32_t number(const RayNode& node) {
+    const Signature signature = signature_of(node);
+    return number(signature, [&] { return key_of(scene_, block_, node); });
+  }
+  std::uint32_t number(const FilterNode& filter) {
+    Signature signature{surface_bits(filter.object, filter.point.inside, 0) | kFilterBit, 0};
+    return number(signature, [&] {
+      NodeKey key = filter_key(scene_, filter.object);
+      key.inside = filter.point.inside;
+      return key;
+    });
+  }
+  [[nodiscard]] const ColorProgram& program(std::uint32_t number) const { return *programs_[number]; }
+  [[nodiscard]] std::size_t size() const { return programs_.size(); }
+
+ private:
+  static constexpr std::uint64_t kFilterBit = std::uint64_t{1} << 63;
+
+  [[nodiscard]] std::uint64_t surface_bits(ObjectId id, bool inside, std::uint64_t children) const {
+    const RayObject& object = scene_.object(id);
+    return std::uint64_t{scene_.scene().object(id).material.index()} << 16 | children << 8 | (inside ? 1U : 0U) |
+           (object.mesh->colors.empty() ? 0U : 2U) | (object.optics.volume && inside ? 4U : 0U) | 8U;
+  }
+  [[nodiscard]] Signature signature_of(const RayNode& node) const {
+    if (node.object.is_none()) return {};
+    std::uint64_t children = 0;
+    for (std::size_t b = 0; b < kBranches; ++b) children |= std::uint64_t{node.child[b] != kNoNode} << b;
+    Signature signature{surface_bits(node.object, node.point.inside, children), 0};
+    const std::size_t lights = scene_.scene().light_order.size();
+    const LightLink* links = block_.lights.data() + node.first_light;
+    for (std::size_t light = 0; light < lights; ++light) {
+      // Only how a light reaches the node counts. More than 32 lights do not fit two bits each: mix.
+      if (light > 0 && light % 32 == 0) signature.lights *= 0x9FB21C651E98DF25ULL;
+      const ShadowState state = links[light].state;
+      const std::uint64_t bits = state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
+      signature.lights += bits << (2 * (light % 32));
+    }
+    return signature;
+  }
+  template <class MakeKey>
+  std::uint32_t number(const Signature& signature, const MakeKey& make_key) {
+    if (!programs_.empty() && signature == last_) return last_number_;
+    const auto [it, is_new] = numbers_.try_emplace(signature, static_cast<std::uint32_t>(programs_.size()));
+    if (is_new) programs_.push_back(&table_.get(scene_.scene(), make_key()));
+    last_ = signature;
+    last_number_ = it->second;
+    return last_number_;
+  }
+
+  const RayScene& scene_;
+  const TreeBlock& block_;
+  ProgramTable& table_;
+  std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
+  std::vector<const ColorProgram*> programs_;
+  Signature last_;
+  std::uint32_t last_number_ = 0;
+};
+
+/// Evaluates runs of equal batch numbers: `batch_of(i)` in [0, batches) for each i in [0, count), in increasing order.
+template <class BatchOf, class Run>
+void for_each_batch(std::size_t count, std::size_t batches, const BatchOf& batch_of, const Run& run) {
+  std::vector<std::uint32_t> first(batches + 1, 0);
+  for (std::size_t i = 0; i < count; ++i) ++first[batch_of(i) + 1];
+  for (std::size_t b = 0; b < batches; ++b) first[b + 1] += first[b];
+  std::vector<std::uint32_t> sorted(count);
+  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+  for (std::size_t i = 0; i < count; ++i) sorted[next[batch_of(i)]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t b = 0; b < batches; ++b)
+    if (first[b] != first[b + 1]) run(b, std::span(sorted).subspan(first[b], first[b + 1] - first[b]));
+}
+
+}  // namespace
+
+const ColorProgram& ProgramTable::get(const Scene& scene, const NodeKey& key) {
+  {
+    const std::shared_lock lock(mutex_);
+    const auto it = programs_.find(key);
+    if (it != programs_.end()) return *it->second;
+  }
+  auto program = std::make_unique<const ColorProgram>(build_program(scene, key));
+  const std::unique_lock lock(mutex_);
+  return *programs_.try_emplace(key, std::move(program)).first->second;
+}
+
+void ProgramTable::forget(MaterialId material) {
+  std::erase_if(programs_, [&](const auto& entry) { return entry.first.material == material; });
+}
+void ProgramTable::forget_environment() {
+  std::erase_if(programs_, [](const auto& entry) { return entry.first.kind == NodeKind::environment; });
+}
+void ProgramTable::clear() { programs_.clear(); }
+std::size_t ProgramTable::size() const { return programs_.size(); }
+
+void shade(const RayScene& scene, const TreeBlock& block, std::span<const std::uint32_t> roots, ProgramTable& table,
+           std::span<Rgba> out) {
+  Programs programs(scene, block, table);
+  BlockColors colors;
+  colors.nodes.resize(block.nodes.size());
+  colors.filters.resize(block.filters.size());
+  Scratch scratch;
+  if (!block.filters.empty()) {
+    std::vector<std::uint32_t> numbers(block.filters.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = programs.number(block.filters[i]);
+    for_each_batch(numbers.size(), programs.size(), [&](std::size_t i) { return numbers[i]; },
+                   [&](std::size_t number, std::span<const std::uint32_t> indices) {
+                     evaluate(programs.program(static_cast<std::uint32_t>(number)), scene, block, true, indices, colors,
+                              scratch);
+                   });
+  }
+  std::vector<std::uint32_t> numbers(block.nodes.size());
+  std::size_t generations = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = programs.number(block.nodes[i]);
+    generations = std::max<std::size_t>(generations, block.nodes[i].ray.generation);
+  }
+  // Deepest generation first.
+  const auto batch_of = [&](std::size_t i) {
+    return (generations - block.nodes[i].ray.generation) * programs.size() + numbers[i];
+  };
+  for_each_batch(numbers.size(), generations * programs.size(), batch_of,
+                 [&](std::size_t batch, std::span<const std::uint32_t> indices) {
+                   const auto number = static_cast<std::uint32_t>(batch % programs.size());
+                   evaluate(programs.program(number), scene, block, false, indices, colors, scratch);
+                 });
+  for (std::size_t k = 0; k < roots.size(); ++k) out[k] = colors.nodes[roots[k]];
+}
+
+void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
+                 std::vector<NodeKey>& keys) {
+  for (PathCursor cursor(path, lights.size()); !cursor.at_end();) {
+    const PathNode node = cursor.next();
+    if (node.is_miss()) {
+      keys.emplace_back();
+      continue;
+    }
+    NodeKey key = surface_key(scene, node.object(), node.inside());
+    key.children = static_cast<std::uint8_t>(node.flags & 0xFU);
+    std::size_t word = 0;
+    for (std::uint32_t light = 0; light < lights.size(); ++light) {
+      const ShadowState state = shadow_state(node.lights, light);
+      note_light(key, lights[light], light, state);
+      if (state != ShadowState::filtered) continue;
+      const std::uint32_t count = node.filters[word++];
+      for (std::uint32_t f = 0; f < count; ++f) {
+        keys.push_back(filter_key(scene, ObjectId(node.filters[word++])));
+        keys.push_back(keys.back());
+        keys.back().inside = true;
+      }
+    }
+    keys.push_back(std::move(key));
+  }
+}
+
+}  // namespace relook

@@ -1,0 +1,41 @@
+// From ray trees to colours: gives every node its program, batches nodes that share one, and evaluates generation by
+// generation, the deepest first, a parent combining its children.
+#pragma once
+#include <map>
+#include <memory>
+#include <shared_mutex>
+#include <span>
+#include <vector>
+
+#include "color/evaluate.h"
+#include "color/illumination.h"
+#include "trace/path_cursor.h"
+
+namespace relook {
+
+/// Programs by key, built on first use; thread-safe. Programs hold no parameter values, so they outlive colour edits.
+class ProgramTable {
+ public:
+  /// `scene`: as it is now; programs are built from it.
+  [[nodiscard]] const ColorProgram& get(const Scene& scene, const NodeKey& key);
+  /// Drops programs whose structure may have changed: those of a material, of the environment, or all.
+  void forget(MaterialId material);
+  void forget_environment();
+  void clear();
+  [[nodiscard]] std::size_t size() const;
+
+ private:
+  mutable std::shared_mutex mutex_;
+  std::map<NodeKey, std::unique_ptr<const ColorProgram>> programs_;
+};
+
+/// Colours of the samples in `block`: out[k] is that of the tree rooted at node roots[k].
+void shade(const RayScene& scene, const TreeBlock& block, std::span<const std::uint32_t> roots, ProgramTable& programs,
+           std::span<Rgba> out);
+
+/// The keys of all nodes and filters of a path, appended: with them the colours that an edit can change are found from
+/// paths alone. `lights`: the light order in which the path was recorded.
+void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
+                 std::vector<NodeKey>& keys);
+
+}  // namespace relook

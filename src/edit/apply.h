@@ -1,0 +1,41 @@
+// Applies edits to a scene state: patch in place with undo of what was touched, recompile what was touched, classify.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edit/journal.h"
+#include "scene/state.h"
+
+namespace relook {
+
+enum class ChangeClass : std::uint8_t { base, color, optical, geometric, mixed };
+[[nodiscard]] std::string_view change_class_name(ChangeClass change);
+
+/// What a step does and why it has its class (Table 1 of the paper).
+struct Classification {
+  ChangeClass change = ChangeClass::color;
+  std::vector<std::string>
+      reasons;  // one sentence per changed entity: "material Glass: index of refraction 1.5 -> 1.8"
+};
+
+/// The class follows from the values before and after alone. A delta that changes nothing is `color`. Both an optical
+/// (or colour) and a geometric change in one delta: `mixed` only if optical and geometric both occur; otherwise the
+/// strongest of color < optical < geometric.
+[[nodiscard]] Classification classify(const Scene& after, const SceneDelta& delta);
+
+/// Applies one edit atomically. On any error the state is as before and InputError{file, where + "/path", ...} is
+/// thrown. `folder`: where {"asset": ...} and image uris are resolved. `camera_node` and its ancestors may not be
+/// edited.
+SceneDelta apply_edit(SceneState& state, const Edit& edit, std::string_view file, const std::filesystem::path& folder);
+
+/// A drag's entry may only touch nodes of the step's selection and their descendants, and may not add or remove nodes.
+/// Throws InputError.
+void check_drag_scope(const SceneState& state, const JournalStep& step, std::size_t entry, std::string_view file);
+
+/// Rehearses all steps of a journal and takes them back, so that a wrong journal is refused before anything is written.
+/// Throws the InputError of the first wrong step. The state is as before either way, ids included. Its price follows
+/// from the edits. Call it before anything holds on to the scene's assets.
+void check_journal(SceneState& state, const Journal& journal);
+
+}  // namespace relook

@@ -1,0 +1,129 @@
+// Files that an edit brings in: images by uri, glTF assets under a new node. All lie below the journal's own folder.
+#include <map>
+
+#include "base/hash.h"
+#include "edit/transaction.h"
+#include "scene/import.h"
+#include "scene/look_names.h"
+
+namespace relook {
+namespace {
+
+using Renames = std::array<std::map<std::string, std::string>, kSectionCount>;
+
+/// Every name of `part` with the prefix, unique in `document`.
+Renames renames_for(const LookDocument& part, const LookDocument& document, const std::string& prefix) {
+  Renames renames;
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const std::string section(section_name(static_cast<Section>(s)));
+    std::set<std::string> given;
+    for (const auto& item : part.look[section].items()) {
+      const std::string name = unique_name(prefix + item.key(), [&](const std::string& candidate) {
+        const bool is_geometry = section == "meshes" && document.assets->mesh_primitives.contains(candidate);
+        return given.contains(candidate) || document.look[section].contains(candidate) || is_geometry ||
+               (section == "nodes" && document.instances.contains(candidate));
+      });
+      given.insert(name);
+      renames[s].emplace(item.key(), name);
+    }
+  }
+  return renames;
+}
+
+/// Roots of a document in the order of its file.
+std::vector<std::string> roots_of(const LookDocument& part) {
+  std::set<std::string> children;
+  for (const Json& node : part.look["nodes"])
+    for (const Json& child : node["children"]) children.insert(child.get<std::string>());
+  std::vector<std::string> roots;
+  for (const std::string& name : part.order[static_cast<std::size_t>(Section::nodes)])
+    if (part.look["nodes"].contains(name) && !children.contains(name)) roots.push_back(name);
+  return roots;
+}
+
+void rename_references(Section section, const Renames& renames, Json& value) {
+  visit_names(schema_of(section), value, [&](Target target, Json& name) {
+    if (target == Target::cameras || target == Target::variants) return;
+    name = renames[static_cast<std::size_t>(target)].at(name.get<std::string>());
+  });
+}
+
+}  // namespace
+
+/// The key of these bytes among the stored images: equal bytes have one key, so no pyramid goes stale.
+std::string Transaction::keep_image(std::shared_ptr<const Bytes> bytes) {
+  std::string key = hash128(*bytes);
+  const auto [image, is_new] = document().assets->images.try_emplace(key);
+  if (is_new) {
+    image->second = {key, std::move(bytes)};
+    new_images_.push_back(key);
+  }
+  return key;
+}
+
+void Transaction::load_image(const std::string& name, const PatchPlace& place) {
+  Json& value = *find({"images", name});
+  if (!value["uri"].is_string()) throw InputError(place.file, place.where, "expected a string");
+  const std::filesystem::path path = contained_path(folder_, value["uri"].get<std::string>(), place.file, place.where);
+  auto bytes = std::make_shared<const Bytes>(read_file(path));
+  (void)read_image_header(*bytes, place.file, place.where);
+  Json& extras = value["extras"];
+  if (!extras.is_object()) extras = Json::object();
+  if (!extras.contains("relook") || !extras["relook"].is_object()) extras["relook"] = Json::object();
+  extras["relook"]["content"] = keep_image(std::move(bytes));
+}
+
+void Transaction::merge_asset(const std::string& node, const PatchPlace& place) {
+  Json& value = *find({"nodes", node});
+  if (!value["asset"].is_string()) throw InputError(place.file, place.where, "expected the name of a glTF file");
+  LookDocument part = make_look_document(
+      import_gltf(contained_path(folder_, value["asset"].get<std::string>(), place.file, place.where)));
+  value.erase("asset");
+  const Renames renames = renames_for(part, document(), node + "/");
+  const auto renamed = [&](Section section, const std::string& name) {
+    return renames[static_cast<std::size_t>(section)].at(name);
+  };
+  if (!value.contains("children")) value["children"] = Json::array();
+  if (!value["children"].is_array()) throw InputError(place.file, place.where, "\"children\" is no array of names");
+  for (const std::string& root : roots_of(part)) value["children"].push_back(renamed(Section::nodes, root));
+
+  Assets& assets = *document().assets;
+  const auto offset = static_cast<std::uint32_t>(assets.meshes.size());
+  for (Mesh& mesh : part.assets->meshes) {
+    mesh.name = renamed(Section::meshes, mesh.name);
+    assets.meshes.push_back(std::move(mesh));
+  }
+  for (auto& [geometry, ids] : part.assets->mesh_primitives) {
+    const std::string name = renamed(Section::meshes, geometry);
+    for (MeshId& id : ids) id = MeshId(id.index() + offset);
+    assets.mesh_primitives[name] = std::move(ids);
+    new_geometry_.push_back(name);
+  }
+  for (auto& [name, matrices] : part.instances) {
+    new_instances_.push_back(renamed(Section::nodes, name));
+    document().instances[new_instances_.back()] = std::move(matrices);
+  }
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const auto section = static_cast<Section>(s);
+    const std::string section_text(section_name(section));
+    for (const auto& item : part.look[section_text].items()) {
+      Json entry = std::move(item.value());
+      rename_references(section, renames, entry);
+      const std::string& name = renamed(section, item.key());
+      if (section == Section::images)
+        entry["extras"]["relook"]["content"] = keep_image(part.assets->images.at(item.key()).bytes);
+      if (section == Section::meshes) {
+        entry["extras"]["relook"]["geometry"] = name;
+        if (entry.contains("primitives"))
+          for (Json& primitive : entry["primitives"]) primitive.erase("extensions");  // variants of the asset's own
+      }
+      if (section == Section::nodes) {
+        entry.erase("camera");
+        if (document().instances.contains(name)) entry["extras"]["relook"]["instances"] = name;
+      }
+      add_entry(section_text, name, std::move(entry));
+    }
+  }
+}
+
+}  // namespace relook

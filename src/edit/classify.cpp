@@ -1,0 +1,131 @@
+// Table 1 of the paper, computed from values: which class a change has, and why.
+#include <algorithm>
+
+#include "edit/apply.h"
+#include "edit/material_changes.h"
+#include "scene/surface_optics.h"
+
+namespace relook {
+namespace {
+
+std::string name_of(const Material& material) { return material.name.empty() ? "(default)" : material.name; }
+
+/// Collects classes and sentences.
+struct Findings {
+  bool color = false, optical = false, geometric = false;
+  std::vector<std::string> reasons;
+
+  void add(ChangeClass change, std::string reason) {
+    color = color || change == ChangeClass::color;
+    optical = optical || change == ChangeClass::optical;
+    geometric = geometric || change == ChangeClass::geometric;
+    reasons.push_back(std::move(reason));
+  }
+};
+
+/// Meshes that living objects show with a material: what decides its optics besides its values.
+std::vector<MeshId> meshes_with(const Scene& scene, MaterialId material) {
+  std::vector<MeshId> meshes;
+  for (const Object& object : scene.objects)
+    if (object.alive && object.material == material) meshes.push_back(object.mesh);
+  std::sort(meshes.begin(), meshes.end());
+  meshes.erase(std::unique(meshes.begin(), meshes.end()), meshes.end());
+  return meshes;
+}
+
+/// The strongest class over all meshes that show the material. Optics depend on a mesh through its smallest alpha
+/// alone, and steadily: if both extremes agree there is no need to look for the meshes.
+ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
+  const Material& after = scene.material(change.id);
+  Mesh solid, clear;
+  clear.min_alpha = 0;
+  const ChangeClass found = material_change_class(change.before, after, solid);
+  if (found == material_change_class(change.before, after, clear)) return found;
+  ChangeClass strongest = ChangeClass::color;
+  for (MeshId mesh : meshes_with(scene, change.id))
+    strongest = std::max(strongest, material_change_class(change.before, after, scene.mesh(mesh)));
+  return strongest;
+}
+
+void classify_material(const Scene& scene, const SceneDelta::MaterialChange& change, Findings& findings) {
+  const Material& after = scene.material(change.id);
+  findings.add(class_of_material(scene, change),
+               "material " + name_of(after) + ": " + describe_material_change(change.before, after));
+}
+
+/// The material as it was before the edit.
+const Material& material_before(const Scene& scene, const SceneDelta& delta, MaterialId id) {
+  for (const SceneDelta::MaterialChange& change : delta.materials)
+    if (change.id == id) return change.before;
+  return scene.material(id);
+}
+
+std::string object_name(const Object& object) {
+  std::string name = "node " + object.node;
+  if (object.primitive > 0) name += " primitive " + std::to_string(object.primitive);
+  if (object.instance > 0) name += " instance " + std::to_string(object.instance);
+  return name;
+}
+
+void classify_object(const Scene& scene, const SceneDelta& delta, const SceneDelta::ObjectChange& change,
+                     Findings& findings) {
+  const Object& before = change.before;
+  const Object& after = scene.object(change.id);
+  const std::string name = object_name(after);
+  if (before.alive != after.alive)
+    return findings.add(ChangeClass::geometric, name + (after.alive ? " appears" : " disappears"));
+  if (before.mesh != after.mesh) return findings.add(ChangeClass::geometric, name + ": another mesh");
+  if (before.displacement != after.displacement)
+    return findings.add(ChangeClass::geometric, name + (!before.displacement  ? ": displacement map added"
+                                                        : !after.displacement ? ": displacement map removed"
+                                                                              : ": displacement map changed"));
+  if (before.to_world != after.to_world) return findings.add(ChangeClass::geometric, name + " is transformed");
+  const Material& old_material = material_before(scene, delta, before.material);
+  const Material& new_material = scene.material(after.material);
+  findings.add(material_change_class(old_material, new_material, scene.mesh(after.mesh)),
+               name + ": material " + name_of(old_material) + " -> " + name_of(new_material));
+}
+
+void classify_light(const Scene& scene, const SceneDelta::LightChange& change, Findings& findings) {
+  const Light& before = change.before;
+  const Light& after = scene.light(change.id);
+  const std::string name = "light " + (after.light.empty() ? before.light : after.light) + " (node " + after.node + ")";
+  if (before.alive != after.alive)
+    findings.add(ChangeClass::geometric, name + (after.alive ? " appears" : " disappears"));
+  else if (before.kind != after.kind)
+    findings.add(ChangeClass::geometric, name + ": another type");
+  else if (before.position != after.position || before.direction != after.direction)
+    findings.add(ChangeClass::geometric, name + " is transformed");
+  else
+    findings.add(ChangeClass::color, name + ": " + describe_light_change(before, after));
+}
+
+}  // namespace
+
+std::string_view change_class_name(ChangeClass change) {
+  constexpr std::array<std::string_view, 5> kNames{"base", "color", "optical", "geometric", "mixed"};
+  return kNames[static_cast<std::size_t>(change)];
+}
+
+Classification classify(const Scene& after, const SceneDelta& delta) {
+  Findings findings;
+  for (const SceneDelta::MaterialChange& change : delta.materials) classify_material(after, change, findings);
+  for (const SceneDelta::ObjectChange& change : delta.objects) classify_object(after, delta, change, findings);
+  for (const SceneDelta::LightChange& change : delta.lights) classify_light(after, change, findings);
+  if (delta.ambient_before)
+    findings.add(ChangeClass::color, "ambient light: " + describe_values(*delta.ambient_before, after.ambient));
+  if (delta.environment_before)
+    findings.add(ChangeClass::color,
+                 "environment: " + describe_environment_change(*delta.environment_before, after.environment));
+  Classification result;
+  result.reasons = std::move(findings.reasons);
+  if (findings.optical && findings.geometric)
+    result.change = ChangeClass::mixed;
+  else if (findings.geometric)
+    result.change = ChangeClass::geometric;
+  else if (findings.optical)
+    result.change = ChangeClass::optical;
+  return result;
+}
+
+}  // namespace relook

@@ -1,0 +1,106 @@
+#include "edit/journal.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/hash.h"
+
+namespace relook {
+namespace {
+
+constexpr std::array<std::string_view, 6> kOperations{"add", "remove", "replace", "move", "copy", "test"};
+
+std::string read_pointer(const JsonView& view) {
+  std::string pointer = view.text();
+  if (!pointer.empty()) (void)split_pointer(pointer, view.file(), view.pointer());
+  return pointer;
+}
+
+PatchOperation read_operation(const JsonView& view) {
+  PatchOperation operation;
+  operation.where = view.pointer();
+  operation.op = static_cast<PatchOp>(view.at("op").one_of(kOperations));
+  const bool has_from = operation.op == PatchOp::move || operation.op == PatchOp::copy;
+  const bool has_value = !has_from && operation.op != PatchOp::remove;
+  std::vector<std::string_view> keys{"op", "path"};
+  if (has_from) keys.emplace_back("from");
+  if (has_value) keys.emplace_back("value");
+  view.only_keys(keys);
+  operation.path = read_pointer(view.at("path"));
+  if (has_from) operation.from = read_pointer(view.at("from"));
+  if (has_value) operation.value = view.at("value").value();
+  return operation;
+}
+
+Edit read_edit(const JsonView& view) {
+  view.require_array();
+  Edit edit;
+  for (std::size_t i = 0; i < view.size(); ++i) edit.push_back(read_operation(view.at(i)));
+  return edit;
+}
+
+std::vector<std::string> read_selection(const JsonView& view) {
+  view.require_array();
+  if (view.size() == 0) view.fail("a drag needs at least one selected node");
+  std::vector<std::string> selection;
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const JsonView item = view.at(i);
+    std::string pointer = item.text();
+    const std::vector<std::string> tokens = split_pointer(pointer, item.file(), item.pointer());
+    if (tokens.size() != 2 || tokens[0] != "nodes") item.fail("expected \"/nodes/<name>\"");
+    if (std::find(selection.begin(), selection.end(), pointer) != selection.end()) item.fail("selected twice");
+    selection.push_back(std::move(pointer));
+  }
+  return selection;
+}
+
+JournalStep read_step(const JsonView& view, std::size_t number) {
+  constexpr std::array<std::string_view, 4> kKeys{"name", "edit", "select", "drag"};
+  view.only_keys(kKeys);
+  JournalStep step;
+  step.where = view.pointer();
+  step.name = view.has("name") ? view.at("name").text() : "step " + std::to_string(number);
+  const bool has_edit = view.has("edit"), has_drag = view.has("drag");
+  if (has_edit && (has_drag || view.has("select"))) view.fail("a step has either \"edit\" or \"select\" and \"drag\"");
+  if (has_edit) {
+    step.edit = read_edit(view.at("edit"));
+    return step;
+  }
+  if (!has_drag && !view.has("select")) view.fail("a step needs \"edit\", or \"select\" and \"drag\"");
+  step.select = read_selection(view.at("select"));
+  const JsonView drag = view.at("drag");
+  drag.require_array();
+  if (drag.size() == 0) drag.fail("a drag needs at least one entry");
+  for (std::size_t i = 0; i < drag.size(); ++i) step.drag.push_back(read_edit(drag.at(i)));
+  return step;
+}
+
+}  // namespace
+
+Journal read_journal(const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 2> kKeys{"relook", "steps"};
+  constexpr std::array<std::string_view, 1> kVersions{"journal/1"};
+  const Bytes bytes = read_file(path);
+  Journal journal;
+  journal.path = path;
+  journal.file = path.string();
+  journal.name = path.stem().string();
+  journal.hash = hash128(bytes);
+  const Json json = parse_json(text_of(bytes), journal.file);
+  const JsonView view(json, journal.file);
+  view.only_keys(kKeys);
+  (void)view.at("relook").one_of(kVersions);
+  const JsonView steps = view.at("steps");
+  steps.require_array();
+  for (std::size_t i = 0; i < steps.size(); ++i) journal.steps.push_back(read_step(steps.at(i), i + 1));
+  return journal;
+}
+
+Edit read_patch(const std::filesystem::path& path) {
+  const Bytes bytes = read_file(path);
+  const std::string file = path.string();
+  const Json json = parse_json(text_of(bytes), file);
+  return read_edit(JsonView(json, file));
+}
+
+}  // namespace relook

@@ -1,0 +1,43 @@
+// journal/1: steps of RFC 6902 edits on the look document, read strictly. Nothing here knows pixels.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+
+namespace relook {
+
+enum class PatchOp : std::uint8_t { add, remove, replace, move, copy, test };
+
+struct PatchOperation {
+  PatchOp op = PatchOp::replace;
+  std::string path;   // as written
+  std::string from;   // move, copy
+  Json value;         // add, replace, test
+  std::string where;  // pointer into the journal: "/steps/3/edit/0"
+};
+using Edit = std::vector<PatchOperation>;
+
+struct JournalStep {
+  std::string name;
+  Edit edit;                        // empty for a drag
+  std::vector<std::string> select;  // drag: "/nodes/<name>" pointers
+  std::vector<Edit> drag;           // one intermediate frame each; the last is committed
+  std::string where;                // "/steps/3"
+};
+
+struct Journal {
+  std::filesystem::path path;  // where it was read; assets and images it names lie below its folder
+  std::string file;            // as named by the user, for messages
+  std::string name;            // file name without extension
+  std::string hash;            // XXH3-128 of the bytes
+  std::vector<JournalStep> steps;
+};
+
+/// Throws InputError{file, pointer, ...}.
+[[nodiscard]] Journal read_journal(const std::filesystem::path& path);
+/// A bare RFC 6902 array (--look).
+[[nodiscard]] Edit read_patch(const std::filesystem::path& path);
+
+}  // namespace relook

@@ -1,0 +1,92 @@
+// What removing, renaming and copying a node means for its parent and its descendants.
+#include <algorithm>
+
+#include "edit/transaction.h"
+#include "scene/look_names.h"
+
+namespace relook {
+namespace {
+
+/// The names in a node's list of children, as far as it is well-formed.
+std::vector<std::string> children_of(const Json* node) {
+  std::vector<std::string> names;
+  if (node == nullptr || !node->is_object() || !node->contains("children")) return names;
+  const Json& children = (*node)["children"];
+  if (!children.is_array()) return names;
+  for (const Json& child : children)
+    if (child.is_string()) names.push_back(child.get<std::string>());
+  return names;
+}
+
+}  // namespace
+
+/// The parent in the document as edited so far: the compiled one, or a node that this edit touched.
+std::string Transaction::current_parent(const std::string& node) {
+  std::vector<std::string> candidates{state_.parent_of(node)};
+  for (auto at = touched_.lower_bound({"nodes", ""}); at != touched_.end() && at->section == "nodes"; ++at)
+    candidates.push_back(at->name);
+  for (const std::string& candidate : candidates) {
+    const std::vector<std::string> children = children_of(find({"nodes", candidate}));
+    if (!candidate.empty() && std::find(children.begin(), children.end(), node) != children.end()) return candidate;
+  }
+  return "";
+}
+
+/// Puts another name into a parent's list of children, or takes it out ("").
+void Transaction::replace_mention(const std::string& parent, const std::string& child, const std::string& by) {
+  if (parent.empty()) return;
+  touch(TouchedEntity{"nodes", parent});
+  Json& children = (*find({"nodes", parent}))["children"];
+  const auto mention = std::find(children.begin(), children.end(), Json(child));
+  if (by.empty())
+    children.erase(mention);
+  else
+    *mention = by;
+}
+
+void Transaction::remove_node(const std::string& name) {
+  replace_mention(current_parent(name), name, "");
+  std::vector<std::string> todo{name};
+  while (!todo.empty()) {
+    const std::string node = std::move(todo.back());
+    todo.pop_back();
+    if (find({"nodes", node}) == nullptr) continue;
+    for (std::string& child : children_of(find({"nodes", node}))) todo.push_back(std::move(child));
+    touch(TouchedEntity{"nodes", node});
+    document().look["nodes"].erase(node);
+  }
+}
+
+void Transaction::rename_node(const std::string& from, const std::string& to) {
+  const std::string parent = current_parent(from);
+  if (parent != to) replace_mention(parent, from, to);
+}
+
+/// A copied node's descendants are copied too, as "<copy>/<name>": a node has one parent.
+void Transaction::copy_descendants(const std::string& copy) {
+  std::vector<std::string> todo{copy};
+  while (!todo.empty()) {
+    const std::string node = std::move(todo.back());
+    todo.pop_back();
+    std::vector<std::string> copies;
+    for (const std::string& child : children_of(find({"nodes", node}))) {
+      const Json* original = find({"nodes", child});
+      if (original == nullptr) continue;
+      const std::string last = child.substr(child.rfind('/') + 1);
+      const std::string name = unique_name(copy + "/" + last, [&](const std::string& candidate) {
+        return find({"nodes", candidate}) != nullptr;
+      });
+      add_entry("nodes", name, Json(*original));
+      copies.push_back(name);
+      todo.push_back(name);
+    }
+    if (Json* value = find({"nodes", node}); value != nullptr && value->is_object()) (*value)["children"] = copies;
+  }
+}
+
+void Transaction::add_entry(const std::string& section, const std::string& name, Json value) {
+  touch(TouchedEntity{section, name});
+  document().look[section][name] = std::move(value);
+}
+
+}  // namespace relook

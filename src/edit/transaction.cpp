@@ -1,0 +1,257 @@
+#include "edit/transaction.h"
+
+#include <algorithm>
+
+#include "scene/look_names.h"
+
+namespace relook {
+namespace {
+
+const Json::json_pointer kContent("/extras/relook/content");
+const Json::json_pointer kGeometry("/extras/relook/geometry");
+const Json::json_pointer kModel("/extras/relook/model");
+const Json::json_pointer kUnlit("/extensions/KHR_materials_unlit");
+
+std::string short_text(const Json& value) {
+  constexpr std::size_t kLongest = 60;
+  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
+}
+
+bool is_prefix(const Tokens& prefix, const Tokens& tokens) {
+  return prefix.size() <= tokens.size() && std::equal(prefix.begin(), prefix.end(), tokens.begin());
+}
+
+bool is_node(const Tokens& tokens) { return tokens.size() == 2 && tokens[0] == "nodes"; }
+
+}  // namespace
+
+Transaction::Transaction(SceneState& state, std::string_view file, std::filesystem::path folder)
+    : state_(state), file_(file), folder_(std::move(folder)), mesh_count_(document().assets->meshes.size()) {}
+
+SceneDelta Transaction::apply(const Edit& edit) {
+  std::vector<Resolved> done;
+  try {
+    for (const PatchOperation& operation : edit) {
+      done.push_back({&operation, resolve(operation.path, {file_, operation.where + "/path"}), {}});
+      if (operation.op == PatchOp::move || operation.op == PatchOp::copy)
+        done.back().from = resolve(operation.from, {file_, operation.where + "/from"});
+      run(done.back());
+    }
+    return state_.recompile({touched_.begin(), touched_.end()}, file_);
+  } catch (const LookError& error) {
+    restore_document();
+    rethrow(error, done);
+  } catch (...) {
+    restore_document();
+    throw;
+  }
+}
+
+void Transaction::undo() {
+  restore_document();
+  (void)state_.recompile({touched_.begin(), touched_.end()}, file_);
+}
+
+Tokens Transaction::resolve(const std::string& pointer, const PatchPlace& place) const {
+  if (pointer.empty()) return {};
+  Tokens tokens = split_pointer(pointer, place.file, place.where);
+  const Tokens lights{"extensions", "KHR_lights_punctual", "lights"};
+  if (is_prefix(lights, tokens)) tokens.erase(tokens.begin(), tokens.begin() + 2);
+  if (tokens[0] == "cameras") throw InputError(place.file, place.where, "cameras are fixed and cannot be edited");
+  const std::optional<Section> section = section_of(tokens[0]);
+  const LookDocument& look = state_.document();
+  if (section && tokens.size() > 1 && look.look.contains(tokens[0]) && look.look[tokens[0]].is_object())
+    tokens[1] = resolve_token(look, *section, tokens[1]);
+  return tokens;
+}
+
+void Transaction::run(Resolved& resolved) {
+  const PatchOperation& operation = *resolved.operation;
+  const PatchPlace place{file_, operation.where + "/path"}, from_place{file_, operation.where + "/from"};
+  Json& look = document().look;
+  Tokens& path = resolved.path;
+  if (operation.op == PatchOp::test) return run_test(resolved, place);
+  const std::string& camera = state_.scene().camera.node;
+  for (const Tokens* tokens : {&resolved.path, operation.op == PatchOp::move ? &resolved.from : &resolved.path})
+    if (!camera.empty() && tokens->size() > 1 && (*tokens)[0] == "nodes" && (*tokens)[1] == camera)
+      throw InputError(file_, place.where, "node \"" + camera + "\" holds the active camera, which is fixed");
+  touch(path);
+  switch (operation.op) {
+    case PatchOp::add:
+      add_at(look, path, operation.value, place);
+      break;
+    case PatchOp::replace:
+      value_at(look, path, place) = operation.value;
+      break;
+    case PatchOp::remove:
+      (void)value_at(look, path, place);
+      if (is_node(path))
+        remove_node(path[1]);
+      else
+        (void)remove_at(look, path, place);
+      break;
+    case PatchOp::copy: {
+      Json value = value_at(look, resolved.from, from_place);
+      add_at(look, path, std::move(value), place);
+      if (is_node(path) && is_node(resolved.from)) copy_descendants(path[1]);
+      break;
+    }
+    case PatchOp::move: {
+      if (is_prefix(resolved.from, path) && resolved.from != path)
+        throw InputError(file_, place.where, "a value cannot be moved into itself");
+      touch(resolved.from);
+      Json value = remove_at(look, resolved.from, from_place);
+      add_at(look, path, std::move(value), place);
+      if (is_node(path) && is_node(resolved.from)) rename_node(resolved.from[1], path[1]);
+      break;
+    }
+    case PatchOp::test:
+      break;
+  }
+  normalize(resolved);
+}
+
+void Transaction::run_test(const Resolved& resolved, const PatchPlace& place) {
+  const Json& value = value_at(document().look, resolved.path, place);
+  if (value == resolved.operation->value) return;
+  throw InputError(file_, resolved.operation->where + "/value",
+                   "the test failed: " + pointer_text(resolved.path) + " is " + short_text(value));
+}
+
+Json* Transaction::find(const TouchedEntity& entity) {
+  Json& look = document().look;
+  if (entity.section.empty()) return &look;
+  if (!look.is_object()) return nullptr;
+  const auto section = look.find(entity.section);
+  if (section == look.end()) return nullptr;
+  if (entity.name.empty()) return &*section;
+  if (!section->is_object()) return nullptr;
+  const auto found = section->find(entity.name);
+  return found == section->end() ? nullptr : &*found;
+}
+
+void Transaction::touch(const TouchedEntity& entity) {
+  if (entity.section.empty() || (section_of(entity.section) && entity.name.empty()))
+    note_section(entity.section);
+  else
+    touched_.insert(entity);
+  if (!saved_.insert(entity).second) return;
+  const Json* value = find(entity);
+  before_.emplace_back(entity, value == nullptr ? std::nullopt : std::optional<Json>(*value));
+}
+
+void Transaction::touch(const Tokens& tokens) {
+  if (tokens.empty()) return touch(TouchedEntity{"", ""});
+  const bool has_names = section_of(tokens[0]).has_value();
+  touch(TouchedEntity{tokens[0], has_names && tokens.size() > 1 ? tokens[1] : ""});
+}
+
+/// All entries of a section ("": of all sections) that exist now are touched.
+void Transaction::note_section(const std::string& section) {
+  const Json& look = document().look;
+  if (!look.is_object()) return;
+  for (const auto& item : look.items()) {
+    if (!section.empty() && item.key() != section) continue;
+    if (!section_of(item.key()))
+      touched_.insert({item.key(), ""});
+    else if (item.value().is_object())
+      for (const auto& entity : item.value().items()) touched_.insert({item.key(), entity.key()});
+  }
+}
+
+void Transaction::normalize(const Resolved& resolved) {
+  const Tokens& path = resolved.path;
+  if (path.empty() || (path.size() == 1 && section_of(path[0]))) {
+    note_section(path.empty() ? "" : path[0]);
+    const std::set<TouchedEntity> all = touched_;
+    for (const TouchedEntity& entity : all)
+      if (path.empty() || entity.section == path[0]) normalize_entity(entity, resolved);
+    return;
+  }
+  normalize_entity({path[0], section_of(path[0]) ? path[1] : ""}, resolved);
+  if (!resolved.from.empty() && resolved.operation->op == PatchOp::move)
+    normalize_entity(
+        {resolved.from[0], resolved.from.size() > 1 && section_of(resolved.from[0]) ? resolved.from[1] : ""}, resolved);
+}
+
+/// Names for indices, defaults, and the files that an entry names.
+void Transaction::normalize_entity(const TouchedEntity& entity, const Resolved& resolved) {
+  Json* value = find(entity);
+  if (value == nullptr || !value->is_object()) return;
+  if (entity.section == "scene") return fill_from_schema(scene_schema(), *value);
+  const std::optional<Section> section = section_of(entity.section);
+  if (!section || entity.name.empty()) return;
+  name_indices(document(), *section, *value);
+  const bool is_whole = resolved.path.size() <= 2;
+  const PatchPlace place{file_, resolved.operation->where + "/value"};
+  if (*section == Section::nodes && value->contains("asset")) {
+    merge_asset(entity.name, {file_, is_whole ? place.where + "/asset" : place.where});
+    value = find(entity);
+  }
+  if (*section == Section::images && (resolved.path.back() == "uri" || !value->contains(kContent)) &&
+      value->contains("uri"))
+    load_image(entity.name, {file_, is_whole ? place.where + "/uri" : place.where});
+  if (*section == Section::meshes && !value->contains(kGeometry) &&
+      document().assets->mesh_primitives.contains(entity.name))
+    (*value)["extras"]["relook"]["geometry"] = entity.name;
+  if (*section == Section::materials && resolved.path.size() > 3 && resolved.path.back() == "KHR_materials_unlit" &&
+      value->contains(kModel))
+    (*value)[kModel] = value->contains(kUnlit) ? "unlit" : "metallic-roughness";
+  fill_defaults(*section, *value);
+}
+
+void Transaction::restore_document() {
+  Json& look = document().look;
+  for (auto entry = before_.rbegin(); entry != before_.rend(); ++entry) {
+    const auto& [section, name] = entry->first;
+    std::optional<Json>& value = entry->second;
+    if (section.empty()) {
+      look = std::move(*value);
+      continue;
+    }
+    if (!look.is_object()) continue;
+    if (name.empty()) {
+      if (value)
+        look[section] = std::move(*value);
+      else
+        look.erase(section);
+      continue;
+    }
+    // A section that is no object any more was itself touched, and comes back whole.
+    if (!look.contains(section) || !look[section].is_object()) continue;
+    if (value)
+      look[section][name] = std::move(*value);
+    else
+      look[section].erase(name);
+  }
+  before_.clear();
+  Assets& assets = *document().assets;
+  assets.meshes.erase(assets.meshes.begin() + static_cast<std::ptrdiff_t>(mesh_count_), assets.meshes.end());
+  for (const std::string& geometry : new_geometry_) assets.mesh_primitives.erase(geometry);
+  for (const std::string& image : new_images_) assets.images.erase(image);
+  for (const std::string& instances : new_instances_) document().instances.erase(instances);
+}
+
+/// Says which operation wrote the value that the compiler refuses.
+void Transaction::rethrow(const LookError& error, const std::vector<Resolved>& done) const {
+  const Resolved* culprit = nullptr;
+  for (const Resolved& resolved : done) {
+    const std::string path = pointer_text(resolved.path);
+    const PatchOp op = resolved.operation->op;
+    if (op == PatchOp::test) continue;
+    if (error.pointer == path || error.pointer.starts_with(path + "/")) {
+      const bool is_unknown_place = error.pointer == path && error.reason.starts_with("unknown key");
+      if (is_unknown_place) throw InputError(file_, resolved.operation->where + "/path", error.reason);
+      if (op == PatchOp::add || op == PatchOp::replace)
+        throw InputError(file_, resolved.operation->where + "/value" + error.pointer.substr(path.size()), error.reason);
+      culprit = &resolved;
+    } else if (path.starts_with(error.pointer + "/") || culprit == nullptr || op == PatchOp::remove) {
+      culprit = &resolved;
+    }
+  }
+  if (culprit == nullptr) throw InputError(file_, error.pointer, error.reason);
+  throw InputError(file_, culprit->operation->where + "/path", error.pointer + ": " + error.reason);
+}
+
+}  // namespace relook

@@ -1,0 +1,71 @@
+// One edit of a look document, all or nothing: operations in place, with the earlier value of every entry they touch,
+// so that its price follows from the edit. Used by apply_edit and by the rehearsal of a journal.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "edit/journal.h"
+#include "edit/patch.h"
+#include "scene/look_schema.h"
+#include "scene/state.h"
+
+namespace relook {
+
+class Transaction {
+ public:
+  Transaction(SceneState& state, std::string_view file, std::filesystem::path folder);
+
+  /// Applies an edit. On InputError document, assets and scene are as before.
+  SceneDelta apply(const Edit& edit);
+  /// Takes back an edit that was applied: document, assets and scene get their earlier values.
+  void undo();
+
+ private:
+  /// An operation with its pointers resolved: names for indices, aliases replaced.
+  struct Resolved {
+    const PatchOperation* operation;
+    Tokens path, from;
+  };
+
+  // transaction.cpp
+  [[nodiscard]] Tokens resolve(const std::string& pointer, const PatchPlace& place) const;
+  void run(Resolved& resolved);
+  void run_test(const Resolved& resolved, const PatchPlace& place);
+  void touch(const Tokens& tokens);
+  void touch(const TouchedEntity& entity);
+  void note_section(const std::string& section);
+  void normalize(const Resolved& resolved);
+  void normalize_entity(const TouchedEntity& entity, const Resolved& resolved);
+  void restore_document();
+  [[noreturn]] void rethrow(const LookError& error, const std::vector<Resolved>& done) const;
+  [[nodiscard]] Json* find(const TouchedEntity& entity);
+  [[nodiscard]] LookDocument& document() { return state_.editable_document(); }
+
+  // node_edits.cpp: what adding, removing, renaming and copying a node means for the nodes around it.
+  void remove_node(const std::string& name);
+  void rename_node(const std::string& from, const std::string& to);
+  void copy_descendants(const std::string& copy);
+  [[nodiscard]] std::string current_parent(const std::string& node);
+  void replace_mention(const std::string& parent, const std::string& child, const std::string& by);
+
+  // asset_edits.cpp: files that an edit brings in.
+  void load_image(const std::string& name, const PatchPlace& place);
+  std::string keep_image(std::shared_ptr<const Bytes> bytes);
+  void merge_asset(const std::string& node, const PatchPlace& place);
+  void add_entry(const std::string& section, const std::string& name, Json value);
+
+  SceneState& state_;
+  std::string file_;
+  std::filesystem::path folder_;
+
+  std::set<TouchedEntity> touched_;
+  std::set<TouchedEntity> saved_;
+  std::vector<std::pair<TouchedEntity, std::optional<Json>>> before_;  // in the order of touching
+  std::size_t mesh_count_;
+  std::vector<std::string> new_geometry_, new_images_, new_instances_;
+};
+
+}  // namespace relook

@@ -1,0 +1,90 @@
+#include "engine/cached_image.h"
+
+#include <span>
+#include <utility>
+
+#include "base/error.h"
+#include "trace/path_cursor.h"
+
+namespace relook {
+namespace {
+
+std::uint64_t triangle_count(const Scene& scene, std::uint32_t object_index) {
+  const Object& object = scene.objects[object_index];
+  const std::uint64_t triangles = scene.mesh(object.mesh).triangles.size();
+  return object.displacement ? triangles << (2 * object.displacement->subdivide) : triangles;
+}
+
+/// Triangles of the objects that a sample with this path hits, in the order of its hits.
+std::vector<std::uint64_t> triangles_hit(const Scene& scene, std::span<const std::uint32_t> words) {
+  std::vector<std::uint64_t> triangles;
+  for (PathCursor cursor(words, scene.light_order.size()); !cursor.at_end();) {
+    const PathNode node = cursor.next();
+    if (node.is_miss()) continue;
+    triangles.push_back(triangle_count(scene, node.object_word));
+    for (std::size_t i = 0; i < node.filters.size();) {
+      const std::uint32_t count = node.filters[i++];
+      for (std::uint32_t k = 0; k < count; ++k) triangles.push_back(triangle_count(scene, node.filters[i++]));
+    }
+  }
+  return triangles;
+}
+
+}  // namespace
+
+CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash) {
+  CacheContent content;
+  content.document = state.document();
+  content.pyramids = state.pyramids();
+  content.camera = state.scene().camera;
+  content.samples = image.view.samples;
+  content.max_depth = image.view.max_depth;
+  content.scene_hash = std::move(scene_hash);
+  content.objects = static_cast<std::uint32_t>(state.scene().objects.size());
+  content.lights = static_cast<std::uint32_t>(state.scene().light_order.size());
+  content.frame = std::move(image.frame.pixels);
+  content.paths = std::move(image.paths);
+  content.trees = std::move(image.trees);
+  content.sample_colors = std::move(image.sample_colors);
+  return content;
+}
+
+std::string broken_hits(const Scene& scene, const Image& image) {
+  std::vector<std::vector<std::uint64_t>> limits;
+  limits.reserve(image.paths.size());
+  for (std::size_t i = 0; i < image.paths.size(); ++i)
+    limits.push_back(triangles_hit(scene, image.paths.words(PathId(static_cast<std::uint32_t>(i)))));
+  for (const TileTrees& tile : image.trees) {
+    for (std::size_t sample = 0; sample < tile.paths.size(); ++sample) {
+      const std::vector<std::uint64_t>& limit = limits[tile.paths[sample].index()];
+      const std::span<const Hit> hits = tile.hits_of(sample);
+      for (std::size_t i = 0; i < hits.size(); ++i)
+        if (hits[i].primitive >= limit[i]) return "a hit names a triangle that its object does not have";
+    }
+  }
+  return "";
+}
+
+CacheAnswer restore_image(CacheContent content, RestoredImage& restored) {
+  const Camera camera = content.camera;
+  std::unique_ptr<SceneState> state;
+  try {
+    state = std::make_unique<SceneState>(std::move(content.document), camera, content.pyramids);
+  } catch (const InputError& error) {
+    return {CacheFault::damaged, "look.json", error.what()};
+  }
+  if (state->scene().objects.size() != content.objects || state->scene().light_order.size() != content.lights)
+    return {CacheFault::damaged, "look.json", "the look document does not have the objects and lights of the paths"};
+  Image image;
+  image.view = {content.samples, content.max_depth};
+  image.frame = {camera.width, camera.height, std::move(content.frame)};
+  image.paths = std::move(content.paths);
+  image.trees = std::move(content.trees);
+  image.sample_colors = std::move(content.sample_colors);
+  std::string broken = broken_hits(state->scene(), image);
+  if (!broken.empty()) return {CacheFault::damaged, "trees", std::move(broken)};
+  restored = {std::move(state), std::move(image)};
+  return {};
+}
+
+}  // namespace relook

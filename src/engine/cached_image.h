@@ -1,0 +1,26 @@
+// Between a cache and a running replay: what preprocess keeps, and the state and image that are restored from it. What a
+// cache alone cannot check, because it takes the compiled scene, is checked here.
+#pragma once
+#include <memory>
+
+#include "cache/cache.h"
+#include "engine/image.h"
+#include "scene/state.h"
+
+namespace relook {
+
+/// Moves `image` into a cache's content.
+[[nodiscard]] CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash);
+
+/// The first reason why the image's paths and hits cannot belong to `scene`, "" if there is none: triangles that do not
+/// exist.
+[[nodiscard]] std::string broken_hits(const Scene& scene, const Image& image);
+
+struct RestoredImage {
+  std::unique_ptr<SceneState> state;
+  Image image;
+};
+/// Compiles the look document and takes over the image. On a fault `restored` is untouched.
+[[nodiscard]] CacheAnswer restore_image(CacheContent content, RestoredImage& restored);
+
+}  // namespace relook

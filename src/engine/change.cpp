@@ -1,0 +1,149 @@
+#include "engine/change.h"
+
+#include <algorithm>
+
+namespace relook {
+namespace {
+
+/// What decides where a cut-out surface has holes.
+bool same_holes(const Material& a, const Material& b) {
+  return a.alpha_cutoff == b.alpha_cutoff && a.base_color.a == b.base_color.a &&
+         a.slot(Slot::base_color) == b.slot(Slot::base_color);
+}
+
+/// What bends the mirror and refracted rays of a surface, beside its optics.
+bool same_normals(const Material& a, const Material& b) {
+  return a.normal_scale == b.normal_scale && a.slot(Slot::normal) == b.slot(Slot::normal) &&
+         a.clearcoat_normal_scale == b.clearcoat_normal_scale &&
+         a.slot(Slot::clearcoat_normal) == b.slot(Slot::clearcoat_normal);
+}
+
+std::uint8_t material_flags(const RayObject& before, const RayObject& after) {
+  unsigned flags = 0;
+  if (before.optics.cut_out != after.optics.cut_out ||
+      (after.optics.cut_out && !same_holes(*before.material, *after.material)))
+    flags |= RayChange::moved | RayChange::shadows;
+  if (before.optics.passes_light != after.optics.passes_light) flags |= RayChange::shadows;
+  if (before.optics != after.optics ||
+      (after.optics.spawns() && !same_normals(*before.material, *after.material)))
+    flags |= RayChange::respawns;
+  return static_cast<std::uint8_t>(flags);
+}
+
+bool same_placement(const Light& a, const Light& b) {
+  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
+}
+bool same_color(const Light& a, const Light& b) {
+  return a.color == b.color && a.intensity == b.intensity && a.range == b.range && a.inner_cone == b.inner_cone &&
+         a.outer_cone == b.outer_cone;
+}
+
+/// Collects the flags of objects and their values before the edit.
+class ObjectChanges {
+ public:
+  ObjectChanges(const RayScene& ray_scene, const Scene& scene, StepChange& change)
+      : ray_scene_(ray_scene), scene_(scene), change_(change) {
+    change_.rays.objects.assign(scene.objects.size(), 0);
+    change_.rays.before_index.assign(scene.objects.size(), kNoNode);
+  }
+
+  void move(const SceneDelta::ObjectChange& object) {
+    Object placement = object.before;
+    placement.material = scene_.object(object.id).material;
+    if (placement == scene_.object(object.id)) return;  // only its material is another one
+    flag(object.id, RayChange::moved | RayChange::shadows);
+  }
+  void compare_material(ObjectId id, const Material& after) {
+    if (id.index() >= ray_scene_.size() || !scene_.object(id).alive) return;
+    const RayObject& before = ray_scene_.object(id);
+    if (before.alive) flag(id, material_flags(before, ray_scene_.make_object(scene_, scene_.object(id), after)));
+  }
+
+ private:
+  void flag(ObjectId id, unsigned flags) {
+    if (flags == 0) return;
+    std::uint8_t& known = change_.rays.objects[id.index()];
+    if (known == 0 && id.index() < ray_scene_.size()) {
+      change_.rays.before_index[id.index()] = static_cast<std::uint32_t>(change_.rays.before.size());
+      change_.rays.before.push_back(ray_scene_.object(id));
+    }
+    known = static_cast<std::uint8_t>(known | flags);
+    change_.any_moved = change_.any_moved || (flags & RayChange::moved) != 0;
+    change_.any_shadows = change_.any_shadows || (flags & RayChange::shadows) != 0;
+    change_.any_respawns = change_.any_respawns || (flags & RayChange::respawns) != 0;
+  }
+
+  const RayScene& ray_scene_;
+  const Scene& scene_;
+  StepChange& change_;
+};
+
+void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::vector<LightId>& old_lights,
+                        StepChange& change) {
+  std::vector<LightId> moved;
+  for (const auto& light : delta.lights) {
+    const Light& after = scene.light(light.id);
+    if (!same_placement(light.before, after)) moved.push_back(light.id);
+    if (!same_color(light.before, after)) change.colors.lights.push_back(light.id);
+  }
+  change.rays.old_lights = old_lights;
+  change.rays.lights_changed = scene.light_order != old_lights || !moved.empty();
+  for (LightId light : scene.light_order) {
+    const auto old = std::ranges::find(old_lights, light);
+    const bool is_kept = old != old_lights.end() && std::ranges::find(moved, light) == moved.end();
+    change.rays.old_light_index.push_back(is_kept ? static_cast<std::uint32_t>(old - old_lights.begin()) : kNoNode);
+  }
+}
+
+}  // namespace
+
+bool ColorChange::reaches(const ColorProgram& program) const {
+  if ((ambient && program.dependencies.ambient) || (environment && program.dependencies.environment)) return true;
+  for (const auto& [material, fields] : materials)
+    if (material == program.material && (fields & program.dependencies.material) != 0) return true;
+  return std::ranges::any_of(
+      lights, [&](LightId light) { return std::ranges::find(program.dependencies.lights, light) != program.dependencies.lights.end(); });
+}
+
+StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,
+                       const std::vector<LightId>& old_lights) {
+  StepChange change;
+  ObjectChanges objects(ray_scene, scene, change);
+  std::vector<bool> is_changed(scene.materials.size(), false);
+  for (const auto& material : delta.materials) {
+    is_changed[material.id.index()] = true;
+    const FieldMask fields = changed_fields(material.before, scene.material(material.id));
+    if (fields != 0) change.colors.materials.emplace_back(material.id, fields);
+  }
+  if (!delta.materials.empty())
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
+      if (is_changed[scene.objects[i].material.index()])
+        objects.compare_material(ObjectId(i), scene.material(scene.objects[i].material));
+  for (const auto& object : delta.objects) {
+    objects.move(object);
+    if (object.before.material == scene.object(object.id).material) continue;
+    objects.compare_material(object.id, scene.material(scene.object(object.id).material));
+    change.colors.reassigned.push_back(object.id);
+  }
+  find_light_changes(scene, delta, old_lights, change);
+  change.colors.ambient = delta.ambient_before.has_value();
+  change.colors.environment = delta.environment_before.has_value();
+  return change;
+}
+
+void build_selection(StepChange& change, const RayScene& ray_scene, Tracer& tracer) {
+  RayChange& rays = change.rays;
+  std::vector<Tracer::Placed> moved, before, after;
+  for (std::uint32_t i = 0; i < rays.objects.size(); ++i) {
+    const ObjectId id(i);
+    if ((rays.flags(id) & RayChange::moved) != 0) moved.push_back({id, &ray_scene.object(id)});
+    if ((rays.flags(id) & RayChange::shadows) == 0) continue;
+    after.push_back({id, &ray_scene.object(id)});
+    if (rays.before_index[i] != kNoNode) before.push_back({id, &rays.before[rays.before_index[i]]});
+  }
+  if (!moved.empty()) rays.moved_after = tracer.build(moved);
+  if (!before.empty()) rays.shadows_before = tracer.build(before);
+  if (!after.empty()) rays.shadows_after = tracer.build(after);
+}
+
+}  // namespace relook

@@ -1,0 +1,42 @@
+// What one edit means for rays and for colours, worked out once per step from the scene delta: the rest of the replay asks
+// nothing else about the edit.
+#pragma once
+#include <vector>
+
+#include "color/field.h"
+#include "color/illumination.h"
+#include "trace/grow.h"
+
+namespace relook {
+
+/// Parameters of colour expressions whose values differ.
+struct ColorChange {
+  std::vector<std::pair<MaterialId, FieldMask>> materials;
+  std::vector<LightId> lights;
+  std::vector<ObjectId> reassigned;  // objects that have another material now
+  bool ambient = false, environment = false;
+
+  [[nodiscard]] bool empty() const { return materials.empty() && lights.empty() && reassigned.empty() && !ambient && !environment; }
+  /// Can the change alter what a program with these dependencies, of this material, yields?
+  [[nodiscard]] bool reaches(const ColorProgram& program) const;
+};
+
+struct StepChange {
+  RayChange rays;
+  ColorChange colors;
+  bool any_moved = false, any_shadows = false, any_respawns = false;
+
+  /// True if ray trees can change at all.
+  [[nodiscard]] bool touches_rays() const { return any_moved || any_shadows || any_respawns || rays.lights_changed; }
+  /// True if every stored segment may have to be tested, not only those of paths that name a changed object.
+  [[nodiscard]] bool touches_all_paths() const { return any_moved || any_shadows || rays.lights_changed; }
+};
+
+/// `ray_scene`: as before the edit; `scene`: as after it. Top levels are not built yet.
+[[nodiscard]] StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,
+                                     const std::vector<LightId>& old_lights);
+
+/// Builds the selection's top levels. `ray_scene`: as after the edit.
+void build_selection(StepChange& change, const RayScene& ray_scene, Tracer& tracer);
+
+}  // namespace relook

@@ -1,0 +1,27 @@
+// How two frames differ: bit by bit, with the size of the differences.
+#pragma once
+#include <cstdint>
+
+#include "base/json.h"
+#include "engine/image.h"
+
+namespace relook {
+
+struct FrameDifference {
+  std::uint64_t pixels_compared = 0;
+  std::uint64_t pixels_different = 0;  // at least one channel with other bits
+  double max_error = 0, rms_error = 0;  // over all channels; infinite when a difference is not finite
+  FrameDifference& operator+=(const FrameDifference& other);
+
+  double squares = 0;  // sum of squared differences, of 4 * pixels_compared channels
+};
+
+/// Requires: frames of one size.
+[[nodiscard]] FrameDifference compare_frames(const Frame& a, const Frame& b);
+/// `percent` of the tiles, always the same ones; 100: all.
+[[nodiscard]] FrameDifference compare_frames(const Frame& a, const Frame& b, double percent);
+
+/// Members pixels_compared, pixels_different, max_error, rms_error (null when infinite).
+[[nodiscard]] Json difference_json(const FrameDifference& difference);
+
+}  // namespace relook

@@ -1,0 +1,29 @@
+// What a step did and what it could skip; the names are those of report.json (DESIGN 1.7).
+#pragma once
+#include <cstdint>
+
+namespace relook {
+
+struct Counters {
+  std::uint64_t samples_total = 0, samples_affected = 0;  // affected: visited because they may change
+  std::uint64_t pixels_changed = 0;                       // pixels with at least one different bit
+  std::uint64_t regions_visited = 0, regions_culled = 0;
+  std::uint64_t ray_tests = 0, ray_tests_culled = 0;      // stored segments tested against the selection only, or not
+  std::uint64_t ray_updates = 0;                          // rays traced against the whole scene
+  std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
+  std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree
+  std::uint64_t color_trees_evaluated = 0;
+
+  Counters& operator+=(const Counters& other);
+};
+
+struct Seconds {
+  double classify = 0, select = 0, test = 0, update = 0, evaluate = 0, write = 0, total = 0;
+};
+
+/// Bytes held in memory by kind.
+struct Resident {
+  std::uint64_t ray_paths = 0, ray_trees = 0, color_trees = 0, tunnels = 0, total = 0;
+};
+
+}  // namespace relook

@@ -1,0 +1,166 @@
+// Writes frames: our own ZIP compression of tiles (OpenEXR's: bytes split by significance, differences, deflate) handed
+// as ready-made chunks to OpenEXR's core, which lays out the file.
+#include <half.h>
+#include <openexr.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "engine/frame_file.h"
+
+namespace relook {
+namespace {
+
+constexpr int kDeflateLevel = 4;
+constexpr float kLargestHalf = 65504.0F;
+
+static_assert(std::endian::native == std::endian::little, "OpenEXR files are little-endian");
+
+std::uint16_t half_bits(float value) {
+  if (std::isfinite(value)) value = std::clamp(value, -kLargestHalf, kLargestHalf);
+  return half(value).bits();
+}
+
+/// The tile as OpenEXR lays it out before compression: row by row, channel by channel in alphabetical order.
+std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, PixelFormat format) {
+  constexpr std::array<float Rgba::*, 4> kChannels{&Rgba::a, &Rgba::b, &Rgba::g, &Rgba::r};
+  const std::size_t value_bytes = format == PixelFormat::half ? 2 : 4;
+  std::vector<unsigned char> bytes(std::size_t{rect.pixels()} * kChannels.size() * value_bytes);
+  unsigned char* out = bytes.data();
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
+    for (const auto channel : kChannels) {
+      for (std::uint32_t x = rect.x0; x < rect.x1; ++x, out += value_bytes) {
+        const float value = frame.pixels[std::size_t{y} * frame.width + x].*channel;
+        if (format == PixelFormat::half) {
+          const std::uint16_t bits = half_bits(value);
+          std::memcpy(out, &bits, sizeof bits);
+        } else {
+          std::memcpy(out, &value, sizeof value);
+        }
+      }
+    }
+  }
+  return bytes;
+}
+
+/// OpenEXR's ZIP: even bytes first, then odd ones; differences of neighbours offset by 128; deflate. Raw when that is not
+/// smaller, which readers tell by the size.
+Bytes zip(const std::vector<unsigned char>& raw) {
+  std::vector<unsigned char> split(raw.size());
+  const std::size_t first_odd = (raw.size() + 1) / 2;
+  for (std::size_t i = 0; i < raw.size(); ++i) split[i / 2 + (i % 2 == 0 ? 0 : first_odd)] = raw[i];
+  for (std::size_t i = split.size(); i-- > 1;)
+    split[i] = static_cast<unsigned char>(split[i] - split[i - 1] + 128);
+
+  uLongf packed_size = compressBound(static_cast<uLong>(split.size()));
+  Bytes packed(packed_size);
+  const int result = compress2(reinterpret_cast<Bytef*>(packed.data()), &packed_size, split.data(),
+                               static_cast<uLong>(split.size()), kDeflateLevel);
+  if (result == Z_MEM_ERROR) throw std::bad_alloc();
+  require(result == Z_OK, "deflate into a buffer of its own bound succeeds");
+  if (packed_size >= raw.size()) {
+    packed.resize(raw.size());
+    std::memcpy(packed.data(), raw.data(), raw.size());
+  } else {
+    packed.resize(packed_size);
+  }
+  return packed;
+}
+
+std::int64_t write_to_memory(exr_const_context_t, void* userdata, const void* buffer, std::uint64_t size,
+                             std::uint64_t offset, exr_stream_error_func_ptr_t) {
+  auto& file = *static_cast<Bytes*>(userdata);
+  if (file.size() < offset + size) file.resize(offset + size);
+  std::memcpy(file.data() + offset, buffer, size);
+  return static_cast<std::int64_t>(size);
+}
+
+void ignore_message(exr_const_context_t, exr_result_t, const char*) {}
+
+void check(exr_result_t result) {
+  if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
+  require(result == EXR_ERR_SUCCESS, "OpenEXR accepts the header and chunks of a frame");
+}
+
+void write_header(exr_context_t file, std::uint32_t width, std::uint32_t height, PixelFormat format,
+                  const FrameMeta& meta) {
+  int part = 0;
+  check(exr_add_part(file, nullptr, EXR_STORAGE_TILED, &part));
+  check(exr_initialize_required_attr_simple(file, part, static_cast<std::int32_t>(width),
+                                            static_cast<std::int32_t>(height), EXR_COMPRESSION_ZIP));
+  check(exr_set_tile_descriptor(file, part, kTileSize, kTileSize, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN));
+  const exr_pixel_type_t type = format == PixelFormat::half ? EXR_PIXEL_HALF : EXR_PIXEL_FLOAT;
+  for (const char* name : {"R", "G", "B", "A"})
+    check(exr_add_channel(file, part, name, type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1));
+  const exr_attr_chromaticities_t rec709{0.64F, 0.33F, 0.30F, 0.60F, 0.15F, 0.06F, 0.3127F, 0.3290F};
+  check(exr_attr_set_chromaticities(file, part, "chromaticities", &rec709));
+  const std::pair<const char*, const std::string&> texts[] = {{"relook:scene", meta.scene_hash},
+                                                              {"relook:journal", meta.journal_hash},
+                                                              {"relook:step", meta.step},
+                                                              {"relook:class", meta.change_class}};
+  for (const auto& [name, text] : texts)
+    if (!text.empty()) check(exr_attr_set_string(file, part, name, text.c_str()));
+  check(exr_write_header(file));
+}
+
+}  // namespace
+
+FrameEncoder::FrameEncoder(std::uint32_t width, std::uint32_t height, PixelFormat format)
+    : width_(width), height_(height), format_(format), chunks_(tile_count(width, height)) {}
+
+void FrameEncoder::compress(const Frame& frame, std::span<const std::uint32_t> tiles) {
+  require(frame.width == width_ && frame.height == height_, "a frame encoder keeps one size");
+  parallel_for(tiles.size(), [&](std::size_t i) {
+    chunks_[tiles[i]] = zip(tile_bytes(frame, tile_rect(tiles[i], width_, height_), format_));
+  });
+}
+
+void FrameEncoder::update(const Frame& frame) {
+  std::vector<std::uint32_t> all(chunks_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  compress(frame, all);
+}
+
+void FrameEncoder::update(const Frame& frame, std::span<const std::uint32_t> changed_pixels) {
+  const std::uint32_t tiles_across = (width_ + kTileSize - 1) / kTileSize;
+  std::vector<bool> touched(chunks_.size());
+  for (const std::uint32_t pixel : changed_pixels)
+    touched[std::size_t{pixel / width_ / kTileSize} * tiles_across + pixel % width_ / kTileSize] = true;
+  std::vector<std::uint32_t> tiles;
+  for (std::uint32_t tile = 0; tile < touched.size(); ++tile)
+    if (touched[tile]) tiles.push_back(tile);
+  compress(frame, tiles);
+}
+
+Bytes FrameEncoder::exr(const FrameMeta& meta) const {
+  Bytes bytes;
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  setup.user_data = &bytes;
+  setup.write_fn = write_to_memory;
+  setup.error_handler_fn = ignore_message;
+  exr_context_t file = nullptr;
+  check(exr_start_write(&file, "frame", EXR_WRITE_FILE_DIRECTLY, &setup));
+  write_header(file, width_, height_, format_, meta);
+  const std::uint32_t tiles_across = (width_ + kTileSize - 1) / kTileSize;
+  for (std::uint32_t tile = 0; tile < chunks_.size(); ++tile)
+    check(exr_write_tile_chunk(file, 0, static_cast<int>(tile % tiles_across), static_cast<int>(tile / tiles_across), 0,
+                               0, chunks_[tile].data(), chunks_[tile].size()));
+  check(exr_finish(&file));
+  return bytes;
+}
+
+Bytes encode_exr(const Frame& frame, const FrameMeta& meta, PixelFormat format) {
+  FrameEncoder encoder(frame.width, frame.height, format);
+  encoder.update(frame);
+  return encoder.exr(meta);
+}
+
+}  // namespace relook

@@ -1,0 +1,53 @@
+// Frames as OpenEXR files: tiled 64x64, ZIP, R,G,B,A, scene-linear Rec.709. Encoded to memory, because OpenEXR's own
+// writer loses the last write error; the bytes are the same in every run: no dates, no names of hosts. Compressed tiles
+// are kept from step to step, so that a step pays for the tiles that it changed.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/files.h"
+#include "engine/image.h"
+
+namespace relook {
+
+enum class PixelFormat : std::uint8_t { half, float32 };
+
+/// What a frame's header says of its origin: the string attributes relook:scene, relook:journal, relook:step and
+/// relook:class. Empty ones are left out.
+struct FrameMeta {
+  std::string scene_hash, journal_hash;
+  std::string step;          // "3", "3_01"
+  std::string change_class;  // change_class_name()
+};
+
+/// The compressed tiles of one frame. Finite values beyond the range of half become its largest ones.
+class FrameEncoder {
+ public:
+  FrameEncoder(std::uint32_t width, std::uint32_t height, PixelFormat format);
+
+  /// Compresses all tiles.
+  void update(const Frame& frame);
+  /// Compresses the tiles of the pixels that changed since the last update (indices into frame.pixels).
+  void update(const Frame& frame, std::span<const std::uint32_t> changed_pixels);
+  /// The bytes of the file.
+  [[nodiscard]] Bytes exr(const FrameMeta& meta) const;
+
+ private:
+  void compress(const Frame& frame, std::span<const std::uint32_t> tiles);
+
+  std::uint32_t width_, height_;
+  PixelFormat format_;
+  std::vector<Bytes> chunks_;  // [tile_count]
+};
+
+[[nodiscard]] Bytes encode_exr(const Frame& frame, const FrameMeta& meta, PixelFormat format);
+
+/// Reads R, G, B and A (1 if missing) of any OpenEXR image, flat, half or float. Throws InputError.
+[[nodiscard]] Frame decode_exr(const std::filesystem::path& path);
+[[nodiscard]] Frame decode_exr(BytesView bytes, std::string_view file);
+
+}  // namespace relook

@@ -1,0 +1,137 @@
+#include "engine/render.h"
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include "base/parallel.h"
+#include "color/shade.h"
+#include "engine/sampling.h"
+#include "trace/grow.h"
+
+namespace relook {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Trees are shaded in chunks of about this many samples, so that a chunk's nodes stay in the processor's cache.
+constexpr std::uint32_t kChunkSamples = 2048;
+
+/// The ray trees of one tile in their stored form, with paths numbered within the tile.
+struct TileRecord {
+  PathTable paths;
+  TileTrees trees;
+};
+
+class TileRenderer {
+ public:
+  TileRenderer(const GrowScene& grow, const ViewOptions& view, ProgramTable& programs)
+      : grow_(grow), view_(view), programs_(programs) {}
+
+  /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
+  void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
+    const std::uint32_t samples = sample_count(rect, view_);
+    colors.resize(samples);
+    if (record != nullptr) record->trees.first_hit.push_back(0);
+    for (std::uint32_t first = 0; first < samples; first += kChunkSamples) {
+      const std::uint32_t last = std::min(first + kChunkSamples, samples);
+      block_.clear();
+      roots_.clear();
+      for (std::uint32_t sample = first; sample < last; ++sample)
+        roots_.push_back(trace_tree(grow_, primary_ray(grow_.scene.scene().camera, view_, rect, sample), sample, block_,
+                                    counters));
+      shade(grow_.scene, block_, roots_, programs_, std::span(colors).subspan(first, last - first));
+      if (record != nullptr) keep(*record);
+    }
+  }
+
+ private:
+  void keep(TileRecord& record) {
+    for (std::uint32_t root : roots_) {
+      words_.clear();
+      pack(block_, root, grow_.scene.scene().light_order.size(), words_, record.trees.hits);
+      record.trees.paths.push_back(record.paths.intern(words_));
+      record.trees.first_hit.push_back(static_cast<std::uint32_t>(record.trees.hits.size()));
+    }
+  }
+
+  const GrowScene& grow_;
+  const ViewOptions& view_;
+  ProgramTable& programs_;
+  TreeBlock block_;
+  std::vector<std::uint32_t> roots_, words_;
+};
+
+/// Numbers a tile's paths in the image's table; ids follow the order of tiles, whatever thread made them.
+void merge(TileRecord& record, PathTable& paths, TileTrees& trees) {
+  std::vector<PathId> ids;
+  for (std::uint32_t i = 0; i < record.paths.size(); ++i) ids.push_back(paths.intern(record.paths.words(PathId(i))));
+  for (PathId& path : record.trees.paths) path = ids[path.index()];
+  trees = std::move(record.trees);
+}
+
+void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint32_t samples, Frame& frame) {
+  for (std::uint32_t pixel = 0; pixel < rect.pixels(); ++pixel)
+    frame.pixels[frame_index(rect, pixel, frame.width)] = pixel_color(&colors[std::size_t{pixel} * samples], samples);
+}
+
+/// Renders every tile; `keep`: also the paths, trees and sample colours.
+void render_tiles(const Scene& scene, Image& image, bool keep, RenderStats& stats, const Progress& progress) {
+  const auto start = Clock::now();
+  const RayScene ray_scene(scene);
+  Tracer tracer;
+  const Tracer::TopLevel level = tracer.build(ray_scene);
+  stats.build_seconds = seconds_since(start);
+
+  const auto render_start = Clock::now();
+  const std::uint32_t width = scene.camera.width, height = scene.camera.height;
+  const std::size_t tiles = tile_count(width, height);
+  image.frame = {width, height, std::vector<Rgba>(std::size_t{width} * height)};
+  const GrowScene grow{ray_scene, &level, image.view.max_depth};
+  ProgramTable programs;
+  std::vector<GrowCounters> counters(tiles);
+  std::vector<TileRecord> records(keep ? tiles : 0);
+  if (keep) image.sample_colors.resize(tiles);
+  std::atomic<std::size_t> done = 0;
+  std::mutex progress_mutex;
+  parallel_for(tiles, [&](std::size_t tile) {
+    const TileRect rect = tile_rect(tile, width, height);
+    std::vector<Rgba> colors;
+    TileRenderer(grow, image.view, programs).render(rect, colors, keep ? &records[tile] : nullptr, counters[tile]);
+    set_pixels(rect, colors, image.view.samples, image.frame);
+    if (keep) image.sample_colors[tile] = std::move(colors);
+    const std::size_t finished = ++done;
+    if (!progress) return;
+    const std::lock_guard lock(progress_mutex);
+    progress(static_cast<double>(finished) / static_cast<double>(tiles));
+  });
+  if (keep) image.trees.resize(tiles);
+  for (std::size_t tile = 0; keep && tile < tiles; ++tile) merge(records[tile], image.paths, image.trees[tile]);
+  for (const GrowCounters& c : counters) {
+    stats.counters.ray_updates += c.ray_updates;
+    stats.counters.shadow_updates += c.shadow_updates;
+  }
+  const std::uint64_t samples = std::uint64_t{width} * height * image.view.samples;
+  stats.counters.samples_total = stats.counters.samples_affected = samples;
+  stats.counters.color_trees_evaluated = samples;
+  stats.render_seconds = seconds_since(render_start);
+}
+
+}  // namespace
+
+Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress) {
+  Image image;
+  image.view = view;
+  render_tiles(scene, image, false, stats, progress);
+  return std::move(image.frame);
+}
+
+Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress) {
+  Image image;
+  image.view = view;
+  render_tiles(scene, image, true, stats, progress);
+  return image;
+}
+
+}  // namespace relook

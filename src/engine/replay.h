@@ -1,0 +1,44 @@
+// One step of a replay: edit the scene state, find what the change can reach, update ray trees and colours there and
+// nowhere else (paper 2.1, 2.2). The frame afterwards equals render() of the edited scene, bit for bit.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "edit/apply.h"
+#include "engine/counters.h"
+#include "engine/image.h"
+#include "scene/state.h"
+
+namespace relook {
+
+struct StepResult {
+  Classification classification;
+  Counters counters;
+  Seconds seconds;                        // classify .. evaluate; write and total are the caller's
+  std::vector<std::uint32_t> changed_pixels;  // indices into frame.pixels, increasing
+};
+
+class Replayer {
+ public:
+  /// Takes over a state and the image rendered from it (by preprocess() or from a cache).
+  Replayer(SceneState state, Image image);
+  ~Replayer();
+  Replayer(Replayer&&) noexcept;
+
+  [[nodiscard]] const SceneState& state() const;
+  [[nodiscard]] const Image& image() const;
+  [[nodiscard]] Resident resident() const;
+  /// Number of stored segments: rays and shadow segments of all ray trees.
+  [[nodiscard]] std::uint64_t segments() const;
+
+  /// Applies one edit. Throws InputError with everything as before.
+  StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relook

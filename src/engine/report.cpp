@@ -1,0 +1,155 @@
+#include "engine/report.h"
+
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <fstream>
+
+namespace relook {
+namespace {
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+std::string cpu_model() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string numbered(const char* folder, const char* suffix, std::uint32_t step,
+                     std::optional<std::uint32_t> drag_frame) {
+  char name[64];
+  if (drag_frame)
+    std::snprintf(name, sizeof name, "%s/%04u_%02u%s", folder, step, *drag_frame, suffix);
+  else
+    std::snprintf(name, sizeof name, "%s/%04u%s", folder, step, suffix);
+  return name;
+}
+
+Json seconds_json(const Seconds& seconds) {
+  return {{"classify", seconds.classify}, {"select", seconds.select},     {"test", seconds.test},
+          {"update", seconds.update},     {"evaluate", seconds.evaluate}, {"write", seconds.write},
+          {"total", seconds.total}};
+}
+
+Json resident_json(const Resident& resident) {
+  return {{"ray_paths", resident.ray_paths},
+          {"ray_trees", resident.ray_trees},
+          {"color_trees", resident.color_trees},
+          {"tunnels", resident.tunnels},
+          {"total", resident.total}};
+}
+
+/// Residency is a later feature: nothing is ever evicted.
+Json no_residency_changes() {
+  return {{"ray_trees", 0}, {"color_trees", 0}, {"tunnels", 0}, {"total", 0}};
+}
+
+Json verify_json(const std::optional<VerifyResult>& verify) {
+  if (!verify) return nullptr;
+  return {{"pixels_compared", verify->pixels_compared}, {"pixels_different", verify->pixels_different}};
+}
+
+Json step_json(const StepReport& step) {
+  const Counters& counters = step.counters;
+  return {{"step", step.step},
+          {"name", step.name},
+          {"class", change_class_name(step.change)},
+          {"reasons", step.reasons},
+          {"drag_frame", or_null(step.drag_frame)},
+          {"frame", step.frame},
+          {"frame_hash", step.frame_hash},
+          {"preview", step.preview},
+          {"samples_total", counters.samples_total},
+          {"samples_affected", counters.samples_affected},
+          {"pixels_changed", counters.pixels_changed},
+          {"regions_visited", counters.regions_visited},
+          {"regions_culled", counters.regions_culled},
+          {"ray_tests", counters.ray_tests},
+          {"ray_tests_culled", counters.ray_tests_culled},
+          {"ray_updates", counters.ray_updates},
+          {"shadow_updates", counters.shadow_updates},
+          {"object_rays", counters.object_rays},
+          {"color_trees_evaluated", counters.color_trees_evaluated},
+          {"seconds", seconds_json(step.seconds)},
+          {"resident", resident_json(step.resident)},
+          {"evicted", no_residency_changes()},
+          {"rebuilt", no_residency_changes()},
+          {"reloaded", no_residency_changes()},
+          {"peak_rss", step.peak_rss_bytes},
+          {"verify", verify_json(step.verify)}};
+}
+
+Json options_json(const RunReport& report) {
+  const StructureOptions& structures = report.structures;
+  return {{"max_depth", report.view.max_depth},
+          {"memory", or_null(structures.memory_bytes)},
+          {"ray_trees", structures.ray_trees_percent},
+          {"color_trees", structures.color_trees_percent},
+          {"tunnels", structures.tunnels},
+          {"groups", structures.groups},
+          {"atoms", structures.atoms},
+          {"shadow_bits", structures.shadow_bits},
+          {"float", report.float_frames},
+          {"verify", or_null(report.verify_percent)}};
+}
+
+}  // namespace
+
+std::string_view program_version() { return RELOOK_VERSION; }
+
+std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
+  return numbered("frames", ".exr", step, drag_frame);
+}
+
+std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
+  return numbered("previews", ".png", step, drag_frame);
+}
+
+std::string step_label(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
+  char label[32];
+  if (drag_frame)
+    std::snprintf(label, sizeof label, "%u_%02u", step, *drag_frame);
+  else
+    std::snprintf(label, sizeof label, "%u", step);
+  return label;
+}
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json report_json(const RunReport& report) {
+  Json steps = Json::array(), frames = Json::object();
+  for (const StepReport& step : report.steps) {
+    steps.push_back(step_json(step));
+    frames[step.frame] = step.frame_hash;
+  }
+  Json cache_bytes = report.cache.bytes_by_part;
+  cache_bytes["total"] = report.cache.total_bytes;
+  return {{"relook", "report/" + std::to_string(kReportVersion)},
+          {"version", kReportVersion},
+          {"program", program_version()},
+          {"scene", {{"file", report.scene}, {"hash", report.scene_hash}}},
+          {"journal", {{"file", report.journal}, {"hash", report.journal_hash}}},
+          {"camera", report.camera.name},
+          {"resolution", {report.camera.width, report.camera.height}},
+          {"samples", report.view.samples},
+          {"options", options_json(report)},
+          {"machine", {{"threads", report.threads}, {"cpu", cpu_model()}}},
+          {"full_render_seconds", or_null(report.full_render_seconds)},
+          {"cache_bytes", std::move(cache_bytes)},
+          {"frames", std::move(frames)},
+          {"interrupted", report.interrupted},
+          {"steps", std::move(steps)}};
+}
+
+}  // namespace relook

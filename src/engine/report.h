@@ -1,0 +1,81 @@
+// report.json, version 1: what each step of a run cost and what it could skip. Its names are stable: report.schema.json
+// beside this file has all of them; additions are welcome, renames are not.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/json.h"
+#include "edit/apply.h"
+#include "engine/counters.h"
+#include "engine/image.h"
+#include "scene/camera.h"
+
+namespace relook {
+
+inline constexpr std::int64_t kReportVersion = 1;
+
+/// The program's own version, "0.1.0".
+[[nodiscard]] std::string_view program_version();
+
+/// Bit-by-bit comparison of a step's frame with a full render of the edited scene.
+struct VerifyResult {
+  std::uint64_t pixels_compared = 0, pixels_different = 0;
+};
+
+struct StepReport {
+  std::uint32_t step = 0;                   // 0: before any edit
+  std::string name;
+  ChangeClass change = ChangeClass::base;
+  std::vector<std::string> reasons;
+  std::optional<std::uint32_t> drag_frame;  // 1.. for the intermediate frames of a drag
+  std::string frame, frame_hash, preview;   // files relative to the run directory; XXH3-128 of the frame's bytes
+  Counters counters;
+  Seconds seconds;
+  Resident resident;
+  std::uint64_t peak_rss_bytes = 0;
+  std::optional<VerifyResult> verify;
+};
+
+/// Structure options as given; frames never depend on them.
+struct StructureOptions {
+  std::optional<std::uint64_t> memory_bytes;
+  double ray_trees_percent = 100, color_trees_percent = 100;
+  std::uint32_t tunnels = 2, groups = 4, atoms = 0, shadow_bits = 0;
+};
+
+struct CacheSizes {
+  std::map<std::string, std::uint64_t> bytes_by_part;  // "look", "geometry", ...
+  std::uint64_t total_bytes = 0;
+};
+
+struct RunReport {
+  std::string scene, scene_hash;      // file as named when the cache was made
+  std::string journal, journal_hash;  // file as named by the user
+  Camera camera;
+  ViewOptions view;
+  StructureOptions structures;
+  bool float_frames = false;
+  std::optional<double> verify_percent;
+  std::size_t threads = 0;
+  std::optional<double> full_render_seconds;
+  CacheSizes cache;
+  bool interrupted = false;           // ended by a signal: later steps are missing
+  std::vector<StepReport> steps;
+};
+
+[[nodiscard]] Json report_json(const RunReport& report);
+
+/// "frames/0003.exr", "frames/0003_01.exr".
+[[nodiscard]] std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
+[[nodiscard]] std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
+/// "3", "3_01".
+[[nodiscard]] std::string step_label(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
+
+/// Largest resident set of this process so far.
+[[nodiscard]] std::uint64_t peak_rss_bytes();
+
+}  // namespace relook

@@ -1,0 +1,186 @@
+// The camera of a cache: glTF's by name, one that frames the scene, or eye, target and angle. libm appears only in
+// values that are uniform over the image and rounded to float.
+#include "scene/camera.h"
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+#include "scene/look_bounds.h"
+#include "scene/look_schema.h"
+
+namespace relook {
+namespace {
+
+using Wide = Imath::V3d;
+
+Direction rounded_direction(const Wide& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// Sets the axes. `forward` is not zero; `up` may be parallel to it.
+void look_along(Camera& camera, Wide forward, Wide up) {
+  forward.normalize();
+  if (forward.cross(up).length() < 1e-9 * up.length()) up = std::abs(forward.y) < 0.9 ? Wide(0, 1, 0) : Wide(0, 0, -1);
+  const Wide right = forward.cross(up).normalized();
+  camera.forward = rounded_direction(forward);
+  camera.right = rounded_direction(right);
+  camera.up = rounded_direction(right.cross(forward));
+}
+
+void set_field_of_view(Camera& camera, double vertical_radians) {
+  const double half = std::tan(vertical_radians / 2);
+  camera.half_height = static_cast<float>(half);
+  camera.half_width = static_cast<float>(half * camera.width / camera.height);
+}
+
+Camera blank_camera(std::string_view name, std::uint32_t width, std::uint32_t height) {
+  Camera camera;
+  camera.name = name;
+  camera.width = width;
+  camera.height = height;
+  return camera;
+}
+
+/// A three-quarter view from the upper right, as near as all corners of the bounds allow.
+Camera framing_camera(const LookDocument& document, std::uint32_t width, std::uint32_t height) {
+  constexpr double kVerticalDegrees = 35, kMargin = 1.04;
+  Camera camera = blank_camera("auto", width, height);
+  set_field_of_view(camera, kVerticalDegrees * std::numbers::pi / 180);
+  Box bounds = world_bounds(document);
+  if (bounds.isEmpty()) bounds = Box(Point(-1, -1, -1), Point(1, 1, 1));
+  const Wide forward = Wide(-0.6, -0.42, -0.8).normalized();
+  look_along(camera, forward, Wide(0, 1, 0));
+  const Wide right(camera.right), up(camera.up), center(bounds.center());
+  const auto half_width = static_cast<double>(camera.half_width), half_height = static_cast<double>(camera.half_height);
+  double distance = 1e-3;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Wide at =
+        Wide(Point((corner & 1U) != 0 ? bounds.max.x : bounds.min.x, (corner & 2U) != 0 ? bounds.max.y : bounds.min.y,
+                   (corner & 4U) != 0 ? bounds.max.z : bounds.min.z)) -
+        center;
+    const double across = std::max(std::abs(at.dot(right)) / half_width, std::abs(at.dot(up)) / half_height);
+    distance = std::max(distance, across * kMargin - at.dot(forward));
+  }
+  camera.eye = Point(center - forward * distance);
+  return camera;
+}
+
+/// "x,y,z" or one number, without anything else.
+std::vector<double> numbers_of(std::string_view text, std::string_view choice) {
+  std::vector<double> numbers;
+  while (true) {
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || !(std::abs(number) <= 1e6))
+      throw UsageError("--camera " + std::string(choice) + ": expected EYE:TARGET:FOV, such as 0,1,5:0,0,0:40");
+    numbers.push_back(number);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (text.empty()) return numbers;
+    if (text[0] != ',')
+      throw UsageError("--camera " + std::string(choice) + ": unexpected \"" + std::string(text) + "\"");
+    text.remove_prefix(1);
+  }
+}
+
+Camera spelled_camera(std::string_view choice, std::uint32_t width, std::uint32_t height) {
+  const std::size_t first = choice.find(':'), second = choice.find(':', first + 1);
+  const std::vector<double> eye = numbers_of(choice.substr(0, first), choice);
+  const std::vector<double> target = numbers_of(choice.substr(first + 1, second - first - 1), choice);
+  const std::vector<double> angle = numbers_of(choice.substr(second + 1), choice);
+  const std::string prefix = "--camera " + std::string(choice) + ": ";
+  if (eye.size() != 3 || target.size() != 3) throw UsageError(prefix + "EYE and TARGET are three numbers each");
+  if (angle.size() != 1 || !(angle[0] >= 0.01 && angle[0] <= 179))
+    throw UsageError(prefix + "FOV is one angle from 0.01 to 179 degrees");
+  const Wide from(eye[0], eye[1], eye[2]), to(target[0], target[1], target[2]);
+  if ((to - from).length() < 1e-9) throw UsageError(prefix + "EYE and TARGET are the same point");
+  Camera camera = blank_camera(choice, width, height);
+  camera.eye = Point(from);
+  set_field_of_view(camera, angle[0] * std::numbers::pi / 180);
+  look_along(camera, to - from, Wide(0, 1, 0));
+  return camera;
+}
+
+double number_at(const Json& value, const char* key, double low, double high, const LookDocument& document,
+                 const std::string& pointer) {
+  if (!value.contains(key) || !value[key].is_number())
+    throw InputError(document.file, pointer, std::string("\"") + key + "\" is missing");
+  const double number = value[key].get<double>();
+  if (!(number > low && number < high)) throw InputError(document.file, pointer + "/" + key, "out of range");
+  return number;
+}
+
+/// A glTF camera (`name` in document.cameras) on a node.
+Camera placed_camera(const LookDocument& document, std::string_view shown_name, const std::string& name,
+                     const std::string& node, std::uint32_t width, std::uint32_t height) {
+  const Json& gltf = document.cameras.at(name).at("camera");
+  const std::string pointer = "/cameras/" + escape_token(name);
+  Camera camera = blank_camera(shown_name, width, height);
+  camera.node = node;
+  const WideTransform world = world_transforms(document).at(node);
+  if (!is_invertible(rounded(world)) || !is_in_range(world))
+    throw InputError(document.file, "/nodes/" + escape_token(node), "the camera's node is scaled to nothing");
+  camera.eye = Point(Wide(world[3][0], world[3][1], world[3][2]));
+  look_along(camera, -Wide(world[2][0], world[2][1], world[2][2]), Wide(world[1][0], world[1][1], world[1][2]));
+  camera.orthographic = gltf.value("type", "") == "orthographic";
+  const Json& lens = gltf.value(camera.orthographic ? "orthographic" : "perspective", Json::object());
+  if (camera.orthographic) {
+    const double half = number_at(lens, "ymag", 1e-9, 1e6, document, pointer);
+    camera.half_height = static_cast<float>(half);
+    camera.half_width = static_cast<float>(half * width / height);
+  } else {
+    set_field_of_view(camera, number_at(lens, "yfov", 1e-4, 3.14, document, pointer));
+  }
+  if (lens.contains("znear")) camera.near = static_cast<float>(number_at(lens, "znear", -1e-9, 1e9, document, pointer));
+  return camera;
+}
+
+/// The name of the camera of the lowest glTF index that a node of the scene holds, or "".
+std::string first_camera(const LookDocument& document) {
+  std::string best;
+  std::size_t best_index = 0;
+  for (const auto& item : document.cameras.items()) {
+    const auto index = item.value().at("index").get<std::size_t>();
+    if (item.value().at("node") == "" || (!best.empty() && index > best_index)) continue;
+    best = item.key();
+    best_index = index;
+  }
+  return best;
+}
+
+}  // namespace
+
+Camera choose_camera(const LookDocument& document, std::string_view choice, std::uint32_t width, std::uint32_t height) {
+  require(width > 0 && height > 0, "a camera has pixels");
+  if (choice == "auto") return framing_camera(document, width, height);
+  const Json& nodes = document.look.at("nodes");
+  const std::string name = choice.empty() ? first_camera(document) : std::string(choice);
+  if (document.cameras.contains(name)) {
+    const std::string node = document.cameras[name].at("node");
+    if (nodes.contains(node)) return placed_camera(document, name, name, node, width, height);
+  }
+  if (nodes.contains(name) && nodes[name].contains("camera"))
+    return placed_camera(document, name, nodes[name]["camera"], name, width, height);
+  if (choice.empty())
+    for (const auto& item : nodes.items())
+      if (item.value().contains("camera"))
+        return placed_camera(document, item.key(), item.value()["camera"], item.key(), width, height);
+  if (choice.find(':') != std::string_view::npos && choice.find(':') != choice.rfind(':'))
+    return spelled_camera(choice, width, height);
+  if (choice.empty()) throw InputError(document.file, "", "the scene has no camera; --camera auto frames the scene");
+  throw InputError(document.file, "",
+                   missing_name(document, Target::cameras, choice) + " (--camera auto frames the scene)");
+}
+
+CameraRay camera_ray(const Camera& camera, float x, float y) {
+  const float across = (2.0F * x / static_cast<float>(camera.width) - 1.0F) * camera.half_width;
+  const float down = (1.0F - 2.0F * y / static_cast<float>(camera.height)) * camera.half_height;
+  const float pixel = 2.0F * camera.half_height / static_cast<float>(camera.height);
+  const Direction offset = camera.right * across + camera.up * down;
+  if (camera.orthographic) return {camera.eye + offset, camera.forward, 0, pixel};
+  const Direction d = camera.forward + offset;
+  const float length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  return {camera.eye, {d.x / length, d.y / length, d.z / length}, pixel, 0};
+}
+
+}  // namespace relook

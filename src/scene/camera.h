@@ -1,0 +1,32 @@
+// The fixed camera of a cache: chosen once from the command line, never edited.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/math.h"
+
+namespace relook {
+
+struct Camera {
+  std::string name;              // of the camera or its node; "auto"; the command line's own words otherwise
+  std::string node;              // look-document node it hangs on, "" when given by eye, target and angle
+  bool orthographic = false;
+  Point eye{0, 0, 0};
+  Direction right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  // unit, orthogonal
+  float half_width = 1, half_height = 1;  // of the image plane at distance 1 (perspective), in metres (orthographic)
+  float near = 0;                // metres along forward: nothing nearer is seen
+  std::uint32_t width = 0, height = 0;    // pixels
+};
+
+struct CameraRay {
+  Point origin;
+  Direction direction;  // unit
+  float spread;         // ray-cone angle of one pixel, radians (perspective), 0 (orthographic)
+  float width;          // ray-cone width at the origin, metres (orthographic: a pixel's size)
+};
+
+/// The ray through image position (x, y) in pixels, (0, 0) the upper left corner of the upper left pixel.
+[[nodiscard]] CameraRay camera_ray(const Camera& camera, float x, float y);
+
+}  // namespace relook

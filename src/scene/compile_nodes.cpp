@@ -1,0 +1,292 @@
+// The node part of a compilation: parents and children, world transforms root to leaf, and the objects and lights that
+// nodes place.
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+#include "scene/compile_scene.h"
+#include "scene/look_schema.h"
+
+namespace relook {
+namespace {
+
+std::string node_pointer(const std::string& name) { return "/nodes/" + escape_token(name); }
+
+std::uint64_t object_key(const std::string& node, std::uint32_t primitive, std::uint32_t instance) {
+  const char zero = '\0';
+  const std::string text = node + zero + std::to_string(primitive) + zero + std::to_string(instance);
+  return hash64(bytes_of(text));
+}
+
+bool is_shown(const Json& node) { return node["extensions"]["KHR_node_visibility"]["visible"].get<bool>(); }
+
+Direction unit_direction(const Imath::V3d& v, double length) {
+  return {static_cast<float>(v.x / length) + 0.0F, static_cast<float>(v.y / length) + 0.0F,
+          static_cast<float>(v.z / length) + 0.0F};
+}
+
+}  // namespace
+
+NodeRecord& Compilation::editable_record(const std::string& node) {
+  const auto [record, is_new] = index_.nodes.try_emplace(node);
+  if (!old_nodes_.contains(node)) {
+    if (is_new)
+      old_nodes_.emplace(node, std::nullopt);
+    else
+      old_nodes_.emplace(node, record->second);
+  }
+  return record->second;
+}
+
+void Compilation::update_nodes(const Entities& entities, const std::vector<TouchedEntity>& touched) {
+  for (const TouchedEntity& entity : touched)
+    if (entity.section == "nodes") unlink_children(entity.name);
+  for (const TouchedEntity& entity : touched)
+    if (entity.section == "nodes" && value_of(entity) != nullptr) link_children(entity.name);
+  for (const TouchedEntity& entity : entities)
+    if (entity.section == "nodes") starts_.insert(entity.name);
+  for (const TouchedEntity& entity : touched)
+    if (entity.section == "nodes" && value_of(entity) == nullptr) forget_node(entity.name);
+  for (const std::string& top : by_depth()) visit_subtree(top);
+  update_light_order();
+}
+
+void Compilation::unlink_children(const std::string& node) {
+  const auto references = index_.references.find({"nodes", node});
+  if (references == index_.references.end()) return;
+  for (const TouchedEntity& child : references->second) {
+    if (child.section != "nodes" || !index_.nodes.contains(child.name)) continue;
+    editable_record(child.name).parent.clear();
+    starts_.insert(child.name);
+  }
+}
+
+void Compilation::link_children(const std::string& node) {
+  const Json& value = document_.look["nodes"][node];
+  (void)editable_record(node);
+  const auto children = value.find("children");
+  if (children == value.end()) return;
+  for (std::size_t i = 0; i < children->size(); ++i) {
+    const auto& child = (*children)[i].get_ref<const std::string&>();
+    NodeRecord& record = editable_record(child);
+    if (!record.parent.empty())
+      fail(node_pointer(node) + "/children/" + std::to_string(i),
+           "node \"" + child + "\" is already a child of \"" + record.parent + "\"");
+    record.parent = node;
+    starts_.insert(child);
+  }
+}
+
+void Compilation::forget_node(const std::string& node) {
+  starts_.erase(node);
+  const auto found = index_.nodes.find(node);
+  if (found == index_.nodes.end()) return;
+  NodeRecord& record = editable_record(node);
+  for (ObjectId id : record.objects) {
+    Object gone = scene_.object(id);
+    gone.alive = false;
+    set_object(id, std::move(gone));
+  }
+  if (!record.light.is_none()) {
+    Light gone = scene_.light(record.light);
+    gone.alive = false;
+    set_light(record.light, std::move(gone));
+  }
+  index_.nodes.erase(found);
+}
+
+/// The starts, parents before children. Fails on a node that is its own ancestor.
+std::vector<std::string> Compilation::by_depth() {
+  std::unordered_map<std::string, std::size_t> depths;  // 0: on the way up
+  for (const std::string& start : starts_) {
+    std::vector<std::string> path;
+    std::size_t depth = 0;
+    for (std::string at = start; !at.empty(); at = index_.nodes.at(at).parent) {
+      const auto [known, is_new] = depths.try_emplace(at, 0);
+      if (!is_new && known->second == 0) fail(node_pointer(at) + "/children", "the node is its own ancestor");
+      if (!is_new) {
+        depth = known->second;
+        break;
+      }
+      path.push_back(at);
+    }
+    for (auto at = path.rbegin(); at != path.rend(); ++at) depths[*at] = ++depth;
+  }
+  std::vector<std::string> ordered(starts_.begin(), starts_.end());
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [&](const std::string& a, const std::string& b) { return depths[a] < depths[b]; });
+  return ordered;
+}
+
+void Compilation::visit_subtree(const std::string& top) {
+  const Json& nodes = document_.look["nodes"];
+  std::vector<std::string> todo{top};
+  while (!todo.empty()) {
+    const std::string name = std::move(todo.back());
+    todo.pop_back();
+    if (!visited_.insert(name).second) continue;
+    const Json& node = nodes[name];
+    if (!visit_node(name, node)) continue;
+    const auto children = node.find("children");
+    if (children == node.end()) continue;
+    for (const Json& child : *children) todo.push_back(child.get<std::string>());
+  }
+}
+
+/// Compiles one node. True if its children must follow: it moved, appeared or disappeared.
+bool Compilation::visit_node(const std::string& name, const Json& node) {
+  NodeRecord& record = editable_record(name);
+  WideTransform world = local_transform(node, context_.file, node_pointer(name));
+  bool visible = is_shown(node);
+  if (!record.parent.empty()) {
+    const NodeRecord& parent = index_.nodes.at(record.parent);
+    world = world * parent.world;
+    visible = visible && parent.visible;
+  }
+  if (!is_in_range(world)) fail(node_pointer(name), "the node's place in the world is out of range (1e12)");
+  const bool is_changed = !record.is_compiled || record.visible != visible || record.world != world;
+  record.world = world;
+  record.visible = visible;
+  record.is_compiled = true;
+  update_objects(name, node, record);
+  update_light(name, node, record);
+  return is_changed;
+}
+
+/// Local matrices of EXT_mesh_gpu_instancing, or nullptr.
+const std::vector<Transform>* Compilation::instances_of(const std::string& name, const Json& node) const {
+  const Json* key = member_at(node, {"extras", "relook", "instances"});
+  if (key == nullptr) return nullptr;
+  const auto found = document_.instances.find(key->get_ref<const std::string&>());
+  if (found == document_.instances.end())
+    fail(node_pointer(name) + "/extras/relook/instances", "the scene has no such instances");
+  return &found->second;
+}
+
+void Compilation::update_objects(const std::string& name, const Json& node, NodeRecord& record) {
+  const std::vector<ObjectId> before = std::move(record.objects);
+  record.objects.clear();
+  if (node.contains("mesh")) {
+    const Json& mesh = document_.look["meshes"][node["mesh"].get_ref<const std::string&>()];
+    const auto& geometry = mesh["extras"]["relook"]["geometry"].get_ref<const std::string&>();
+    Object object;
+    object.node = name;
+    if (const Json* displacement = member_at(node, {"extras", "relook", "displacement"}))
+      object.displacement =
+          compile_displacement(context_, *displacement, node_pointer(name) + "/extras/relook/displacement");
+    const std::vector<Transform>* instances = instances_of(name, node);
+    const std::size_t instance_count = instances == nullptr ? 1 : instances->size();
+    for (MeshId mesh_id : document_.assets->mesh_primitives.find(geometry)->second) {
+      object.mesh = mesh_id;
+      object.primitive = document_.assets->meshes[mesh_id.index()].primitive;
+      const Json& primitive = mesh["primitives"][object.primitive];
+      object.material = primitive.contains("material") ? index_.materials.at(primitive["material"].get<std::string>())
+                                                       : index_.default_material;
+      for (object.instance = 0; object.instance < instance_count; ++object.instance) {
+        object.to_world =
+            rounded(instances == nullptr ? record.world : widened((*instances)[object.instance]) * record.world);
+        object.alive = record.visible && is_invertible(object.to_world);
+        const ObjectId id = object_slot(name, object.primitive, object.instance);
+        object.key = scene_.object(id).key;
+        set_object(id, object);
+        record.objects.push_back(id);
+      }
+    }
+  }
+  for (ObjectId id : before)
+    if (std::find(record.objects.begin(), record.objects.end(), id) == record.objects.end()) {
+      Object gone = scene_.object(id);
+      gone.alive = false;
+      set_object(id, std::move(gone));
+    }
+}
+
+ObjectId Compilation::object_slot(const std::string& node, std::uint32_t primitive, std::uint32_t instance) {
+  const std::uint64_t key = object_key(node, primitive, instance);
+  const auto [slot, is_new] =
+      index_.objects.try_emplace(key, ObjectId(static_cast<std::uint32_t>(scene_.objects.size())));
+  if (is_new) {
+    Object object;
+    object.node = node;
+    object.primitive = primitive;
+    object.instance = instance;
+    object.key = key;
+    object.alive = false;
+    scene_.objects.push_back(std::move(object));
+    new_objects_.push_back(key);
+  }
+  const Object& object = scene_.object(slot->second);
+  if (object.node != node || object.primitive != primitive || object.instance != instance)
+    fail(node_pointer(node), "the name has the same hash as \"" + object.node + "\": rename one of them");
+  return slot->second;
+}
+
+void Compilation::set_object(ObjectId id, Object value) {
+  Object& now = scene_.objects[id.index()];
+  if (now == value) return;
+  old_objects_.try_emplace(id, now);
+  now = std::move(value);
+}
+
+void Compilation::set_light(LightId id, Light value) {
+  Light& now = scene_.lights[id.index()];
+  if (now == value) return;
+  old_lights_.try_emplace(id, now);
+  now = std::move(value);
+}
+
+void Compilation::update_light(const std::string& name, const Json& node, NodeRecord& record) {
+  const auto punctual = node["extensions"].find("KHR_lights_punctual");
+  if (punctual == node["extensions"].end()) {
+    if (record.light.is_none()) return;
+    Light gone = scene_.light(record.light);
+    gone.alive = false;
+    set_light(record.light, std::move(gone));
+    record.light = LightId::none();
+    return;
+  }
+  const auto& light_name = (*punctual)["light"].get_ref<const std::string&>();
+  Light light =
+      compile_light(context_, light_name, document_.look["lights"][light_name], "/lights/" + escape_token(light_name));
+  light.node = name;
+  const Imath::V3d back(record.world[2][0], record.world[2][1], record.world[2][2]);
+  const double length = std::sqrt(back.x * back.x + back.y * back.y + back.z * back.z);
+  const bool has_direction = length > 1e-12;
+  if (light.kind != LightKind::point && has_direction) light.direction = unit_direction(-back, length);
+  if (light.kind != LightKind::directional)
+    light.position = {static_cast<float>(record.world[3][0]) + 0.0F, static_cast<float>(record.world[3][1]) + 0.0F,
+                      static_cast<float>(record.world[3][2]) + 0.0F};
+  light.alive = record.visible && (has_direction || light.kind == LightKind::point);
+  const auto [slot, is_new] =
+      index_.lights.try_emplace(name, LightId(static_cast<std::uint32_t>(scene_.lights.size())));
+  if (is_new) {
+    Light none;
+    none.node = name;
+    none.alive = false;
+    scene_.lights.push_back(std::move(none));
+    new_lights_.push_back(name);
+  }
+  record.light = slot->second;
+  set_light(slot->second, std::move(light));
+}
+
+void Compilation::update_light_order() {
+  if (old_lights_.empty()) return;
+  scene_.light_order.clear();
+  for (std::uint32_t i = 0; i < scene_.lights.size(); ++i)
+    if (scene_.lights[i].alive) scene_.light_order.emplace_back(i);
+  std::sort(scene_.light_order.begin(), scene_.light_order.end(),
+            [&](LightId a, LightId b) { return scene_.light(a).node < scene_.light(b).node; });
+}
+
+void Compilation::check_camera() const {
+  const std::string& node = scene_.camera.node;
+  const auto old = old_nodes_.find(node);
+  if (node.empty() || old == old_nodes_.end() || !old->second) return;
+  const auto now = index_.nodes.find(node);
+  if (now == index_.nodes.end()) fail(node_pointer(node), "the active camera's node cannot be removed");
+  if (now->second.world != old->second->world || now->second.visible != old->second->visible)
+    fail(node_pointer(node), "this moves or hides the active camera, which is fixed");
+}
+
+}  // namespace relook

@@ -1,0 +1,28 @@
+// Checks of a glTF document before any parser or decoder trusts it (glTF 2.0 sections 3 and 5): every reference in
+// range, every number of the right type, finite and in its range, the nodes a forest. What only concerns parts that
+// relook does not read (animations, skins, min and max of accessors) is not checked.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/json.h"
+
+namespace relook {
+
+/// Magnitude limits of what a file may contain; journals obey the same ones.
+inline constexpr float kLargestTransform = 1e6F;
+inline constexpr float kLargestFactor = 1e6F;
+
+/// Throws InputError{file, pointer, ...}. Appends sentences about what will be ignored.
+void check_document(const Json& gltf, std::string_view file, std::vector<std::string>& warnings);
+
+/// Parts of check_document().
+void check_asset_and_extensions(const JsonView& root, std::vector<std::string>& warnings);
+void check_data_layout(const JsonView& root);  // buffers, bufferViews, accessors
+void check_meshes(const JsonView& root);
+void check_nodes(const JsonView& root);      // nodes, scenes, cameras
+void check_materials(const JsonView& root);  // materials, textures, samplers, images, variants
+void check_lights(const JsonView& root);
+
+}  // namespace relook

@@ -1,0 +1,255 @@
+// Primitives to triangles (glTF 2.0 section 3.7.2).
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "scene/gltf_accessor.h"
+
+namespace relook {
+namespace {
+
+constexpr float kLargestCoordinate = 1e9F;  // products of two edges and their squares stay finite
+
+/// One primitive being decoded.
+struct Source {
+  const GltfModel& model;
+  const GltfPrimitive& primitive;
+  std::string_view file;
+  std::string pointer;  // "/meshes/0/primitives/1"
+
+  [[noreturn]] void fail(std::string_view semantic, std::string_view what) const {
+    std::string where = pointer;
+    if (semantic == "indices")
+      where += "/indices";
+    else if (!semantic.empty())
+      where += "/attributes/" + escape_token(semantic);
+    throw InputError(file, where, what);
+  }
+  [[nodiscard]] const GltfAccessor* accessor(std::string_view semantic) const {
+    const auto found = primitive.attributes.find(semantic);
+    return found == primitive.attributes.end() ? nullptr : &model.accessors[found->second];
+  }
+};
+
+/// Which formats a semantic may have, KHR_mesh_quantization included.
+struct Format {
+  std::size_t least_width, most_width;
+  bool integers;             // integer components at all
+  bool only_normalized;      // integers must be normalized
+  bool only_signed = false;  // normals and tangents
+};
+
+void check_format(const Source& source, std::string_view semantic, const GltfAccessor& accessor, const Format& format) {
+  const bool is_float = accessor.component == Component::f32;
+  const bool is_signed = accessor.component == Component::i8 || accessor.component == Component::i16;
+  const bool fits = accessor.width >= format.least_width && accessor.width <= format.most_width &&
+                    accessor.component != Component::u32 &&
+                    (is_float || (format.integers && (accessor.normalized || !format.only_normalized) &&
+                                  (is_signed || !format.only_signed)));
+  if (!fits) source.fail(semantic, "the accessor's type is not one that this attribute may have");
+}
+
+/// The attribute's numbers, all finite and at most `largest` in magnitude; empty without the attribute.
+std::vector<float> attribute(const Source& source, std::string_view semantic, const Format& format, float largest) {
+  const GltfAccessor* accessor = source.accessor(semantic);
+  if (accessor == nullptr) return {};
+  check_format(source, semantic, *accessor, format);
+  if (const auto fault = data_fault(source.model, *accessor); !fault.empty()) source.fail(semantic, fault);
+  std::vector<float> values = read_floats(source.model, *accessor);
+  const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
+  if (bad != values.end())
+    source.fail(semantic, "element " +
+                              std::to_string(static_cast<std::size_t>(bad - values.begin()) / accessor->width) +
+                              (std::isfinite(*bad) ? " is too large" : " is not finite"));
+  return values;
+}
+
+/// Unit vector, or zero when there is no direction in it.
+Normal normalized(float x, float y, float z) {
+  const double dx = static_cast<double>(x), dy = static_cast<double>(y), dz = static_cast<double>(z);
+  const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+  if (length < 1e-12) return {0, 0, 0};
+  return {static_cast<float>(dx / length), static_cast<float>(dy / length), static_cast<float>(dz / length)};
+}
+
+std::vector<std::uint32_t> vertex_sequence(const Source& source, std::size_t vertices) {
+  std::vector<std::uint32_t> sequence;
+  if (source.primitive.indices == kNoIndex) {
+    sequence.resize(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) sequence[i] = static_cast<std::uint32_t>(i);
+    return sequence;
+  }
+  const GltfAccessor& accessor = source.model.accessors[source.primitive.indices];
+  const Component type = accessor.component;
+  if (accessor.width != 1 || accessor.normalized ||
+      (type != Component::u8 && type != Component::u16 && type != Component::u32))
+    source.fail("indices", "indices must be unsigned integers, one at a time");
+  if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail("indices", fault);
+  sequence = read_indices(source.model, accessor);
+  const std::uint32_t restart = type == Component::u8 ? 0xFFU : type == Component::u16 ? 0xFFFFU : 0xFFFFFFFFU;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    if (sequence[i] == restart)
+      source.fail("indices",
+                  "index " + std::to_string(i) + " is the primitive restart value " + std::to_string(restart));
+    if (sequence[i] >= vertices)
+      source.fail("indices", "index " + std::to_string(i) + " is " + std::to_string(sequence[i]) + ", but there are " +
+                                 std::to_string(vertices) + " vertices");
+  }
+  return sequence;
+}
+
+/// Triangles of modes 4 (list), 5 (strip) and 6 (fan). Those that name a vertex twice have no area: they are left out.
+std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::uint32_t>& sequence, int mode) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
+    const std::array<std::uint32_t, 3> corners = {sequence[a], sequence[b], sequence[c]};
+    if (corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2]) triangles.push_back(corners);
+  };
+  const std::size_t step = mode == 4 ? 3 : 1;
+  triangles.reserve(sequence.size() / step);
+  for (std::size_t i = 0; i + 3 <= sequence.size(); i += step) {
+    if (mode == 6)
+      add(i + 1, i + 2, 0);
+    else if (mode == 5)
+      add(i, i + 1 + i % 2, i + 2 - i % 2);
+    else
+      add(i, i + 1, i + 2);
+  }
+  return triangles;
+}
+
+/// Vertices whose stored normal has no direction get the mean of their triangles' normals.
+void replace_missing_normals(Mesh& mesh) {
+  const Normal zero{0, 0, 0};
+  if (std::ranges::find(mesh.normals, zero) == mesh.normals.end()) return;
+  std::vector<Imath::V3d> sums(mesh.positions.size(), Imath::V3d(0, 0, 0));
+  for (const auto& corners : mesh.triangles) {
+    const Imath::V3d a(mesh.positions[corners[0]]), b(mesh.positions[corners[1]]), c(mesh.positions[corners[2]]);
+    const Imath::V3d area = (b - a).cross(c - a);
+    for (const std::uint32_t corner : corners) sums[corner] += area;
+  }
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
+    if (mesh.normals[i] != zero) continue;
+    const double length = std::sqrt(sums[i].dot(sums[i]));
+    mesh.normals[i] = length > 0 ? Normal(sums[i] / length) : Normal(0, 0, 1);
+  }
+}
+
+void decode_normals(const Source& source, Mesh& mesh) {
+  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kLargestCoordinate);
+  mesh.normals.reserve(values.size() / 3);
+  for (std::size_t i = 0; i < values.size(); i += 3)
+    mesh.normals.push_back(normalized(values[i], values[i + 1], values[i + 2]));
+  replace_missing_normals(mesh);
+}
+
+/// Tangents without a direction make the whole column useless: the renderer then derives tangents from uv.
+void decode_tangents(const Source& source, Mesh& mesh) {
+  const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kLargestCoordinate);
+  mesh.tangents.reserve(values.size() / 4);
+  for (std::size_t i = 0; i < values.size(); i += 4) {
+    const Normal direction = normalized(values[i], values[i + 1], values[i + 2]);
+    if (direction == Normal(0, 0, 0)) {
+      mesh.tangents.clear();
+      return;
+    }
+    const float handedness = values[i + 3];
+    if (handedness != 1 && handedness != -1)
+      source.fail("TANGENT", "element " + std::to_string(i / 4) + " has a w that is neither 1 nor -1");
+    mesh.tangents.emplace_back(direction.x, direction.y, direction.z, handedness);
+  }
+}
+
+void decode_colors(const Source& source, Mesh& mesh) {
+  const auto values = attribute(source, "COLOR_0", {3, 4, true, true}, kLargestCoordinate);
+  if (values.empty()) return;
+  const std::size_t width = source.accessor("COLOR_0")->width;
+  const auto clamped = [&](std::size_t i) { return std::clamp(values[i], 0.0F, 1.0F); };
+  mesh.colors.reserve(values.size() / width);
+  for (std::size_t i = 0; i < values.size(); i += width) {
+    const float alpha = width == 4 ? clamped(i + 3) : 1.0F;
+    mesh.colors.emplace_back(clamped(i), clamped(i + 1), clamped(i + 2), alpha);
+    mesh.min_alpha = std::min(mesh.min_alpha, alpha);
+  }
+}
+
+Mesh decode_primitive(const Source& source) {
+  Mesh mesh;
+  const auto positions = attribute(source, "POSITION", {3, 3, true, false}, kLargestCoordinate);
+  mesh.positions.reserve(positions.size() / 3);
+  for (std::size_t i = 0; i < positions.size(); i += 3) {
+    mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
+    mesh.bounds.extendBy(mesh.positions.back());
+  }
+  mesh.triangles = triangles_of(vertex_sequence(source, mesh.positions.size()), source.primitive.mode);
+  decode_normals(source, mesh);
+  decode_tangents(source, mesh);
+  for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
+    const auto values = attribute(source, "TEXCOORD_" + std::to_string(set), {2, 2, true, false}, kLargestCoordinate);
+    mesh.uv[set].reserve(values.size() / 2);
+    for (std::size_t i = 0; i < values.size(); i += 2) mesh.uv[set].emplace_back(values[i], values[i + 1]);
+  }
+  decode_colors(source, mesh);
+  return mesh;
+}
+
+bool makes_triangles(const GltfPrimitive& primitive) {
+  return primitive.mode >= 4 && primitive.attributes.contains("POSITION");
+}
+
+/// Bytes that a primitive takes while it is decoded.
+std::uint64_t decoded_bytes(const GltfModel& model, const GltfPrimitive& primitive) {
+  if (!makes_triangles(primitive)) return 0;
+  const std::uint64_t vertices = model.accessors[primitive.attributes.at("POSITION")].count;
+  const std::uint64_t corners =
+      primitive.indices == kNoIndex ? vertices : std::uint64_t{model.accessors[primitive.indices].count};
+  const std::uint64_t corner_bytes = primitive.mode == 4 ? 8 : 16;
+  return vertices * (24 + 16 * primitive.attributes.size()) + corners * corner_bytes;
+}
+
+/// A small file can name the same accessor in many primitives: refused before memory runs out.
+void check_total(const GltfModel& model, std::string_view file) {
+  std::uint64_t data = 0, needed = 0;
+  for (const auto& buffer : model.buffers) data += buffer.size();
+  for (const auto& primitives : model.meshes)
+    for (const auto& primitive : primitives) needed += decoded_bytes(model, primitive);
+  const auto memory =
+      static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  constexpr std::uint64_t kAlwaysFine = std::uint64_t{256} << 20, kMostGrowth = 64;
+  const std::uint64_t limit = std::min(memory / 2, kAlwaysFine + kMostGrowth * data);
+  if (needed > limit)
+    throw InputError(file, "/meshes",
+                     "the geometry needs " + std::to_string(needed >> 20) + " MB; " + std::to_string(limit >> 20) +
+                         " MB are allowed for this file");
+}
+
+}  // namespace
+
+std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
+                                             std::vector<std::string>& warnings) {
+  check_total(model, file);
+  std::vector<std::vector<Mesh>> meshes;
+  for (std::size_t m = 0; m < model.meshes.size(); ++m) {
+    auto& primitives = meshes.emplace_back();
+    for (std::size_t p = 0; p < model.meshes[m].size(); ++p) {
+      const GltfPrimitive& primitive = model.meshes[m][p];
+      const std::string pointer = "/meshes/" + std::to_string(m) + "/primitives/" + std::to_string(p);
+      if (!makes_triangles(primitive)) {
+        warnings.push_back(pointer + (primitive.mode < 4 ? ": points and lines are ignored"
+                                                         : ": a primitive without positions is ignored"));
+        continue;
+      }
+      Mesh mesh = decode_primitive({model, primitive, file, pointer});
+      mesh.primitive = static_cast<std::uint32_t>(p);
+      if (mesh.triangles.empty())
+        warnings.push_back(pointer + ": a primitive without triangles is ignored");
+      else
+        primitives.push_back(std::move(mesh));
+    }
+  }
+  return meshes;
+}
+
+}  // namespace relook

@@ -1,0 +1,66 @@
+// The geometry of a glTF file as tinygltf parsed it, without tinygltf's types: buffers, views, accessors, primitives.
+// Invariant: the document passed check_document(), so every index and byte range here is sound.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/json.h"
+#include "scene/import.h"
+
+namespace relook {
+
+inline constexpr std::size_t kNoIndex = std::numeric_limits<std::size_t>::max();
+
+struct GltfBufferView {
+  std::size_t buffer = 0, offset = 0, length = 0;
+  std::size_t stride = 0;  // bytes from element to element; 0: tightly packed
+};
+
+/// glTF's numbers for component types.
+enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
+
+struct GltfAccessor {
+  std::size_t view = kNoIndex;  // kNoIndex: zeros
+  std::size_t offset = 0, count = 0;
+  Component component = Component::f32;
+  std::size_t width = 1;  // components of an element; 0 for matrices, which relook does not read
+  bool normalized = false;
+  std::size_t sparse_count = 0;  // elements replaced
+  std::size_t sparse_index_view = 0, sparse_index_offset = 0;
+  Component sparse_index_component = Component::u16;
+  std::size_t sparse_value_view = 0, sparse_value_offset = 0;
+};
+
+struct GltfPrimitive {
+  std::map<std::string, std::size_t, std::less<>> attributes;  // semantic -> accessor
+  std::size_t indices = kNoIndex;                              // accessor
+  int mode = 4;                                                // 4 triangles, 5 strip, 6 fan
+};
+
+struct GltfModel {
+  std::vector<std::vector<unsigned char>> buffers;
+  std::vector<GltfBufferView> views;
+  std::vector<GltfAccessor> accessors;
+  std::vector<std::vector<GltfPrimitive>> meshes;
+};
+
+/// Lets tinygltf parse the geometry of a checked document. It gets `buffers` from memory and sees no file.
+/// Throws InputError{file, ...} with tinygltf's own words if it refuses.
+[[nodiscard]] GltfModel parse_model(const Json& gltf, std::vector<std::vector<unsigned char>> buffers,
+                                    std::string_view file);
+
+/// All triangle primitives, in order. Checks what can only be seen in the data: finite values, indices below the vertex
+/// count, no primitive restart. Throws InputError{file, pointer, ...}; refuses before allocating more than the machine
+/// has.
+[[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
+                                                           std::vector<std::string>& warnings);
+
+/// EXT_mesh_gpu_instancing of every node. Throws InputError.
+[[nodiscard]] std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model,
+                                                                   std::string_view file);
+
+}  // namespace relook

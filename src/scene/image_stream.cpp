@@ -1,0 +1,121 @@
+#include "scene/image_stream.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace relook {
+namespace {
+
+std::uint32_t big_endian(BytesView bytes, std::size_t offset, std::size_t count) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < count; ++i) value = value << 8 | std::to_integer<std::uint32_t>(bytes[offset + i]);
+  return value;
+}
+
+/// CRC-32 of ISO 3309, as PNG uses it.
+class Crc {
+ public:
+  Crc() {
+    for (std::uint32_t i = 0; i < table_.size(); ++i) {
+      table_[i] = i;
+      for (int bit = 0; bit < 8; ++bit)
+        table_[i] = (table_[i] & 1U) != 0 ? 0xEDB88320U ^ table_[i] >> 1 : table_[i] >> 1;
+    }
+  }
+  [[nodiscard]] std::uint32_t of(BytesView bytes) const {
+    std::uint32_t crc = 0xFFFFFFFFU;
+    for (const std::byte byte : bytes) crc = table_[(crc ^ std::to_integer<std::uint32_t>(byte)) & 0xFFU] ^ crc >> 8;
+    return ~crc;
+  }
+
+ private:
+  std::array<std::uint32_t, 256> table_;
+};
+
+constexpr std::uint8_t kStartOfImage = 0xD8, kEndOfImage = 0xD9, kStartOfScan = 0xDA, kFill = 0xFF;
+
+bool is_restart(std::uint8_t marker) { return marker >= 0xD0 && marker <= 0xD7; }
+
+/// Markers without a length behind them.
+bool stands_alone(std::uint8_t marker) {
+  return marker == kStartOfImage || marker == kEndOfImage || marker == 0x01 || is_restart(marker);
+}
+
+bool makes_pixels(std::uint8_t marker) {
+  constexpr std::uint8_t kJfif = 0xE0, kAdobe = 0xEE, kComment = 0xFE;
+  const bool is_application = marker >= 0xE0 && marker <= 0xEF;
+  return marker != kComment && (!is_application || marker == kJfif || marker == kAdobe);
+}
+
+/// Where the entropy-coded data that starts at `offset` meets the next marker.
+std::size_t end_of_scan(BytesView jpeg, std::size_t offset) {
+  for (; offset + 1 < jpeg.size(); ++offset) {
+    const auto next = std::to_integer<std::uint8_t>(jpeg[offset + 1]);
+    if (std::to_integer<int>(jpeg[offset]) == 0xFF && next != 0 && next != kFill && !is_restart(next)) return offset;
+  }
+  return jpeg.size();
+}
+
+}  // namespace
+
+ImageStream png_pixels(BytesView png) {
+  constexpr std::size_t kSignatureBytes = 8, kFrameBytes = 12;  // length, type, CRC
+  constexpr std::array<std::string_view, 5> kKept = {"IHDR", "PLTE", "tRNS", "IDAT", "IEND"};
+  const Crc crc;
+  ImageStream pixels;
+  const auto at = [](std::size_t offset) { return " at byte " + std::to_string(offset); };
+  if (png.size() < kSignatureBytes) return {{}, "the PNG is cut short"};
+  pixels.bytes.reserve(png.size());
+  pixels.bytes.assign(png.begin(), png.begin() + kSignatureBytes);
+  for (std::size_t offset = kSignatureBytes;;) {
+    if (png.size() - offset < kFrameBytes) return {{}, "the PNG is cut short" + at(png.size())};
+    const std::size_t length = big_endian(png, offset, 4);
+    if (length > png.size() - offset - kFrameBytes) return {{}, "the PNG is cut short" + at(png.size())};
+    const BytesView chunk = png.subspan(offset, length + kFrameBytes);
+    const std::string_view type = text_of(chunk.subspan(4, 4));
+    if (crc.of(chunk.subspan(4, length + 4)) != big_endian(chunk, length + 8, 4))
+      return {{}, "the PNG is damaged: wrong CRC of the chunk" + at(offset)};
+    if ((type == "IHDR") != (offset == kSignatureBytes)) return {{}, "the PNG does not start with one header"};
+    if (std::ranges::find(kKept, type) != kKept.end())
+      pixels.bytes.insert(pixels.bytes.end(), chunk.begin(), chunk.end());
+    else if (type[0] >= 'A' && type[0] <= 'Z')
+      return {{}, "the PNG has an unknown critical chunk" + at(offset)};
+    if (type == "IEND") return pixels;
+    offset += chunk.size();
+  }
+}
+
+ImageStream jpeg_pixels(BytesView jpeg) {
+  ImageStream pixels;
+  pixels.bytes.reserve(jpeg.size());
+  const auto keep = [&](std::size_t from, std::size_t to) {
+    const BytesView part = jpeg.subspan(from, to - from);
+    pixels.bytes.insert(pixels.bytes.end(), part.begin(), part.end());
+  };
+  const ImageStream cut_short{{}, "the JPEG is cut short at byte " + std::to_string(jpeg.size())};
+  std::size_t offset = 0;
+  while (offset + 2 <= jpeg.size()) {
+    if (std::to_integer<int>(jpeg[offset]) != 0xFF)
+      return {{}, "the JPEG is damaged: no marker at byte " + std::to_string(offset)};
+    const auto marker = std::to_integer<std::uint8_t>(jpeg[offset + 1]);
+    if (marker == kFill) {
+      ++offset;
+      continue;
+    }
+    std::size_t end = offset + 2;
+    if (!stands_alone(marker)) {
+      if (end + 2 > jpeg.size()) return cut_short;
+      end += big_endian(jpeg, end, 2);
+      if (end < offset + 4) return {{}, "the JPEG is damaged: an impossible length at byte " + std::to_string(offset)};
+      if (end > jpeg.size()) return cut_short;
+    }
+    if (marker == kStartOfScan) end = end_of_scan(jpeg, end);
+    if (makes_pixels(marker)) keep(offset, end);
+    if (marker == kEndOfImage) return pixels;
+    offset = end;
+  }
+  return cut_short;
+}
+
+}  // namespace relook

@@ -1,0 +1,52 @@
+#include "scene/import.h"
+
+#include "scene/gltf_check.h"
+#include "scene/gltf_json.h"
+#include "scene/gltf_model.h"
+#include "scene/gltf_source.h"
+
+namespace relook {
+namespace {
+
+/// The bytes behind data URIs are loaded by now; their text would only burden the look document.
+void drop_data_uris(Json& gltf) {
+  for (const char* key : {"buffers", "images"}) {
+    const auto section = gltf.find(key);
+    if (section == gltf.end()) continue;
+    for (Json& entry : *section) {
+      const auto uri = entry.find("uri");
+      if (uri != entry.end() && uri->get_ref<const std::string&>().find(':') != std::string::npos) entry.erase(uri);
+    }
+  }
+}
+
+/// check_document() lets rounding errors pass; from here on the fourth row is exactly 0 0 0 1.
+void make_matrices_affine(Json& gltf) {
+  const auto nodes = gltf.find("nodes");
+  if (nodes == gltf.end()) return;
+  for (Json& node : *nodes) {
+    const auto matrix = node.find("matrix");
+    if (matrix == node.end()) continue;
+    for (const std::size_t i : {3U, 7U, 11U, 15U}) (*matrix)[i] = i == 15 ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+ImportedGltf import_gltf(const std::filesystem::path& path) {
+  GltfSource source = read_gltf_source(path);
+  ImportedGltf imported;
+  imported.file = source.file;
+  check_document(source.json, source.file, imported.warnings);
+  auto buffers = load_buffers(source);
+  imported.images = load_images(source, buffers);
+  const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
+  imported.meshes = decode_meshes(model, source.file, imported.warnings);
+  imported.instances = decode_instances(source.json, model, source.file);
+  imported.gltf = std::move(source.json);
+  drop_data_uris(imported.gltf);
+  make_matrices_affine(imported.gltf);
+  return imported;
+}
+
+}  // namespace relook

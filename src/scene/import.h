@@ -1,0 +1,29 @@
+// glTF 2.0 import (.gltf, .glb) of files that may be wrong or hostile: scanned before tinygltf parses them, file access
+// contained below the scene's folder, everything checked after the parse in 64-bit arithmetic.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/json.h"
+#include "scene/mesh.h"
+
+namespace relook {
+
+/// A glTF file, checked: the JSON is valid in every index and number that look documents and the compiler use.
+struct ImportedGltf {
+  std::string file;                     // as named by the user, for messages
+  Json gltf;                            // the document
+  /// Per glTF mesh, per primitive. Points, lines and empty primitives are left out (warned about).
+  std::vector<std::vector<Mesh>> meshes;
+  std::vector<EncodedImage> images;     // per glTF image; name not yet set
+  /// Per glTF node: local matrices of EXT_mesh_gpu_instancing, empty without the extension.
+  std::vector<std::vector<Transform>> instances;
+  std::vector<std::string> warnings;    // optional extensions ignored, skins left unposed, ...
+};
+
+/// Reads and checks a scene file. Throws InputError{file, pointer or "byte N", ...}.
+[[nodiscard]] ImportedGltf import_gltf(const std::filesystem::path& path);
+
+}  // namespace relook

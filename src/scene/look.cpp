@@ -1,0 +1,174 @@
+// glTF to look document: arrays become objects keyed by unique name, indices become names, every default is filled in,
+// what relook does not support is left out.
+#include "scene/look.h"
+
+#include <algorithm>
+#include <set>
+
+#include "scene/look_names.h"
+#include "scene/look_schema.h"
+
+namespace relook {
+namespace {
+
+const Json& member_or_empty(const Json& value, std::string_view key) {
+  static const Json empty = Json::array();
+  if (!value.is_object()) return empty;
+  const auto found = value.find(key);
+  return found == value.end() ? empty : *found;
+}
+
+/// The glTF array behind a section.
+const Json& gltf_array(const Json& gltf, Section section) {
+  if (section != Section::lights) return member_or_empty(gltf, section_name(section));
+  return member_or_empty(member_or_empty(member_or_empty(gltf, "extensions"), "KHR_lights_punctual"), "lights");
+}
+
+/// One unique printable name per item of a glTF array.
+std::vector<std::string> names_of(const Json& items, std::string_view noun) {
+  std::set<std::string> taken;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Json& given = member_or_empty(items[i], "name");
+    std::string name = given.is_string() ? printable(given.get_ref<const std::string&>()) : "";
+    if (name.empty()) name = std::string(noun) + "_" + std::to_string(i);
+    name = unique_name(std::move(name), [&](const std::string& candidate) { return taken.contains(candidate); });
+    taken.insert(name);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+/// glTF indices of the nodes of the active scene, parents before children. The importer has checked that they are
+/// trees.
+std::vector<std::size_t> active_nodes(const Json& gltf) {
+  const Json& nodes = member_or_empty(gltf, "nodes");
+  const Json& scenes = member_or_empty(gltf, "scenes");
+  std::vector<std::size_t> active;
+  if (!scenes.empty()) {
+    for (const Json& root : member_or_empty(scenes.at(gltf.value("scene", std::size_t{0})), "nodes"))
+      active.push_back(root);
+  } else {
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const Json& node : nodes)
+      for (const Json& child : member_or_empty(node, "children")) is_child.at(child) = true;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (!is_child[i]) active.push_back(i);
+  }
+  for (std::size_t next = 0; next < active.size(); ++next)
+    for (const Json& child : member_or_empty(nodes.at(active[next]), "children")) active.push_back(child);
+  return active;
+}
+
+void name_cameras(const Json& gltf, const std::vector<std::size_t>& active, LookDocument& document) {
+  const Json& cameras = member_or_empty(gltf, "cameras");
+  const std::vector<std::string> names = names_of(cameras, "camera");
+  document.cameras = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    document.cameras[names[i]] = {{"node", ""}, {"camera", cameras[i]}, {"index", i}};
+  for (auto node = active.rbegin(); node != active.rend(); ++node) {
+    const Json& camera = member_or_empty(gltf["nodes"][*node], "camera");
+    if (camera.is_number_unsigned())
+      document.cameras[names.at(camera)]["node"] = document.order[static_cast<std::size_t>(Section::nodes)][*node];
+  }
+}
+
+void name_variants(const Json& gltf, LookDocument& document) {
+  const Json& extension = member_or_empty(member_or_empty(gltf, "extensions"), "KHR_materials_variants");
+  const Json& variants = member_or_empty(extension, "variants");
+  if (!variants.empty())
+    document.look["extensions"]["KHR_materials_variants"]["variants"] = names_of(variants, "variant");
+}
+
+/// Copies one glTF item into the look document under its name.
+void add_entity(LookDocument& document, Section section, std::size_t index, Json value) {
+  const std::string& name = document.order[static_cast<std::size_t>(section)][index];
+  cut_to_schema(schema_of(section), value);
+  if (value.is_object()) value.erase("name");
+  name_indices(document, section, value);
+  if (section == Section::images) value["extras"]["relook"]["content"] = name;
+  if (section == Section::meshes) value["extras"]["relook"]["geometry"] = name;
+  if (section == Section::nodes && document.instances.contains(name)) value["extras"]["relook"]["instances"] = name;
+  fill_defaults(section, value);
+  document.look[std::string(section_name(section))][name] = std::move(value);
+}
+
+void move_assets(ImportedGltf& imported, LookDocument& document) {
+  document.assets = std::make_shared<Assets>();
+  const auto& mesh_names = document.order[static_cast<std::size_t>(Section::meshes)];
+  for (std::size_t i = 0; i < imported.meshes.size(); ++i) {
+    std::vector<MeshId>& ids = document.assets->mesh_primitives[mesh_names.at(i)];
+    for (Mesh& mesh : imported.meshes[i]) {
+      mesh.name = mesh_names[i];
+      ids.emplace_back(static_cast<std::uint32_t>(document.assets->meshes.size()));
+      document.assets->meshes.push_back(std::move(mesh));
+    }
+  }
+  const auto& image_names = document.order[static_cast<std::size_t>(Section::images)];
+  for (std::size_t i = 0; i < imported.images.size(); ++i) {
+    imported.images[i].name = image_names.at(i);
+    document.assets->images[image_names[i]] = std::move(imported.images[i]);
+  }
+  const auto& node_names = document.order[static_cast<std::size_t>(Section::nodes)];
+  for (std::size_t i = 0; i < imported.instances.size(); ++i)
+    if (!imported.instances[i].empty()) document.instances[node_names.at(i)] = std::move(imported.instances[i]);
+}
+
+Json active_scene(const Json& gltf) {
+  const Json& scenes = member_or_empty(gltf, "scenes");
+  Json scene = scenes.empty() ? Json::object() : scenes.at(gltf.value("scene", std::size_t{0}));
+  cut_to_schema(scene_schema(), scene);
+  return scene;
+}
+
+}  // namespace
+
+void fill_defaults(Section section, Json& value) {
+  if (!value.is_object()) return;
+  if (section == Section::materials && value.contains(Json::json_pointer("/extensions/KHR_materials_unlit")) &&
+      !value.contains(Json::json_pointer("/extras/relook/model"))) {
+    Json& extras = value["extras"];
+    if (extras.is_null()) extras = Json::object();
+    if (extras.is_object() && (!extras.contains("relook") || extras["relook"].is_object()))
+      extras["relook"]["model"] = "unlit";
+  }
+  if (section == Section::lights && value.value("type", Json()) == "spot" && !value.contains("spot"))
+    value["spot"] = Json::object();
+  if (section == Section::nodes && value.contains("matrix")) {
+    // A node has either a matrix or translation, rotation and scale: no defaults for the latter beside the former.
+    const Json given = value;
+    fill_from_schema(schema_of(section), value);
+    for (const char* key : {"translation", "rotation", "scale"})
+      if (!given.contains(key)) value.erase(key);
+    return;
+  }
+  fill_from_schema(schema_of(section), value);
+}
+
+LookDocument make_look_document(ImportedGltf imported) {
+  LookDocument document;
+  document.file = imported.file;
+  const Json& gltf = imported.gltf;
+  document.look = Json::object();
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const auto section = static_cast<Section>(s);
+    document.look[std::string(section_name(section))] = Json::object();
+    document.order[s] = names_of(gltf_array(gltf, section), target_noun(static_cast<Target>(s)));
+  }
+  move_assets(imported, document);
+  const std::vector<std::size_t> active = active_nodes(gltf);
+  name_cameras(gltf, active, document);
+  name_variants(gltf, document);
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const auto section = static_cast<Section>(s);
+    if (section == Section::nodes) continue;
+    const Json& items = gltf_array(gltf, section);
+    for (std::size_t i = 0; i < items.size(); ++i) add_entity(document, section, i, items[i]);
+  }
+  for (std::size_t index : active) add_entity(document, Section::nodes, index, gltf["nodes"][index]);
+  document.look["scene"] = active_scene(gltf);
+  fill_from_schema(scene_schema(), document.look["scene"]);
+  return document;
+}
+
+}  // namespace relook

@@ -1,0 +1,84 @@
+#include "scene/look_bounds.h"
+
+#include <set>
+
+#include "scene/look_schema.h"
+
+namespace relook {
+namespace {
+
+struct Place {
+  WideTransform world;
+  bool visible = true;
+};
+
+const Json* member(const Json& value, std::string_view pointer) {
+  const Json::json_pointer at{std::string(pointer)};
+  return value.contains(at) ? &value[at] : nullptr;
+}
+
+std::map<std::string, Place> places_of(const LookDocument& document) {
+  const Json& nodes = document.look.at("nodes");
+  std::set<std::string> children;
+  for (const Json& node : nodes)
+    for (const Json& child : node.at("children")) children.insert(child.get<std::string>());
+  std::map<std::string, Place> places;
+  std::vector<std::string> todo;
+  for (const auto& item : nodes.items())
+    if (!children.contains(item.key())) {
+      places[item.key()] = {};
+      todo.push_back(item.key());
+    }
+  while (!todo.empty()) {
+    const std::string name = std::move(todo.back());
+    todo.pop_back();
+    Place& place = places[name];  // holds the parent's place until here
+    const Json& node = nodes.at(name);
+    place.world = local_transform(node, document.file, "/nodes/" + escape_token(name)) * place.world;
+    const Json* visible = member(node, "/extensions/KHR_node_visibility/visible");
+    place.visible = place.visible && (visible == nullptr || *visible == true);
+    for (const Json& child : node.at("children"))
+      if (nodes.contains(child.get<std::string>()) && places.try_emplace(child.get<std::string>(), place).second)
+        todo.push_back(child.get<std::string>());
+  }
+  return places;
+}
+
+void add_corners(const Box& box, const WideTransform& world, Box& bounds) {
+  if (box.isEmpty()) return;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    const Imath::V3d local(static_cast<double>((corner & 1U) != 0 ? box.max.x : box.min.x),
+                           static_cast<double>((corner & 2U) != 0 ? box.max.y : box.min.y),
+                           static_cast<double>((corner & 4U) != 0 ? box.max.z : box.min.z));
+    bounds.extendBy(Point(local * world));
+  }
+}
+
+}  // namespace
+
+std::map<std::string, WideTransform> world_transforms(const LookDocument& document) {
+  std::map<std::string, WideTransform> transforms;
+  for (const auto& [name, place] : places_of(document)) transforms.emplace(name, place.world);
+  return transforms;
+}
+
+Box world_bounds(const LookDocument& document) {
+  Box bounds;
+  for (const auto& [name, place] : places_of(document)) {
+    const Json& node = document.look.at("nodes").at(name);
+    if (!place.visible || !node.contains("mesh")) continue;
+    const Json& mesh = document.look.at("meshes").at(node["mesh"].get<std::string>());
+    const Json* geometry = member(mesh, "/extras/relook/geometry");
+    if (geometry == nullptr || !document.assets->mesh_primitives.contains(geometry->get<std::string>())) continue;
+    const Json* instances = member(node, "/extras/relook/instances");
+    const std::vector<Transform> alone(1);
+    const std::vector<Transform>& matrices =
+        instances == nullptr ? alone : document.instances.at(instances->get<std::string>());
+    for (MeshId id : document.assets->mesh_primitives.find(geometry->get<std::string>())->second)
+      for (const Transform& matrix : matrices)
+        add_corners(document.assets->meshes[id.index()].bounds, widened(matrix) * place.world, bounds);
+  }
+  return bounds;
+}
+
+}  // namespace relook

@@ -1,0 +1,71 @@
+// What a look document may contain, as tables: every key with its type, range, default and the section it refers to.
+// One table serves four walks: cutting a glTF value down to what is supported, filling defaults, checking an edited
+// value, and visiting the names it refers to. glTF 2.0 section 5 and the KHR_* extensions; extras.relook.
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+#include "base/json.h"
+#include "scene/look.h"
+
+namespace relook {
+
+enum class FieldKind : std::uint8_t { number, integer, boolean, text, texts, reals, choice, name, names, object, list };
+
+/// What a name refers to; the first are those of Section, in its order.
+enum class Target : std::uint8_t { materials, textures, images, samplers, meshes, lights, nodes, cameras, variants };
+[[nodiscard]] std::string_view target_noun(Target target);  // "material"
+
+struct Schema;
+struct Field {
+  std::string_view key;
+  FieldKind kind = FieldKind::number;
+  Json fallback = {};                          // null: absent until set
+  double low = 0, high = 0;                    // number, integer, reals
+  std::size_t count = 0;                       // reals
+  const Schema* inner = nullptr;               // object, list
+  Target target = Target::materials;           // name, names
+  std::vector<std::string_view> choices = {};  // choice
+  bool required = false;
+  bool implied = false;  // object: created with its defaults when absent
+};
+struct Schema {
+  std::vector<Field> fields;
+};
+
+[[nodiscard]] const Schema& schema_of(Section section);
+[[nodiscard]] const Schema& scene_schema();       // /scene
+[[nodiscard]] const Schema& extensions_schema();  // /extensions
+
+/// A number field with this lower bound must be above zero.
+inline constexpr double kAboveZero = 1e-30;
+
+/// Removes, at every level, the keys that the schema does not know. Values of a wrong type stay.
+void cut_to_schema(const Schema& schema, Json& value);
+/// Adds the defaults that are missing. Values of a wrong type stay.
+void fill_from_schema(const Schema& schema, Json& value);
+/// Calls `visit` with every name (or glTF index) that the value refers to.
+void visit_names(const Schema& schema, Json& value, const std::function<void(Target, Json&)>& visit);
+void visit_names(const Schema& schema, const Json& value, const std::function<void(Target, const Json&)>& visit);
+
+/// A wrong value of a look document; knows its place so that a journal's reader can name its own.
+struct LookError : InputError {
+  LookError(std::string_view file, std::string_view at, std::string_view why)
+      : InputError(file, at, why), pointer(at), reason(why) {}
+  std::string pointer, reason;
+};
+
+/// Checks types, ranges, unknown keys, and that every name exists in `document`. Throws LookError{file, pointer, ...}.
+void check_against_schema(const Schema& schema, const Json& value, const LookDocument& document, std::string_view file,
+                          const std::string& pointer);
+
+/// "no material \"Gould\"; did you mean \"Gold\"?"
+[[nodiscard]] std::string missing_name(const LookDocument& document, Target target, std::string_view name);
+[[nodiscard]] bool name_exists(const LookDocument& document, Target target, std::string_view name);
+/// "a string", "a number", ... for messages.
+[[nodiscard]] std::string_view type_noun(const Json& value);
+
+}  // namespace relook

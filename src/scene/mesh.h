@@ -1,0 +1,46 @@
+// Geometry of one glTF primitive as triangles in object space, and the encoded images that came with it. Immutable after
+// import; look documents name these by mesh and image name.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/files.h"
+#include "base/id.h"
+#include "base/math.h"
+
+namespace relook {
+
+/// One glTF mesh primitive. Invariants: every index < positions.size(); optional columns are empty or as long as
+/// positions; everything is finite.
+struct Mesh {
+  std::string name;                                     // look-document name of the glTF mesh
+  std::uint32_t primitive = 0;                          // which primitive of that mesh
+  std::vector<Point> positions;                         // object space, metres
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from the front
+  std::vector<Normal> normals;                          // unit; empty: flat shading by the geometric normal
+  std::vector<Imath::V4f> tangents;                     // xyz unit, w handedness; empty: from the uv of each triangle
+  std::array<std::vector<Uv>, 2> uv;                    // TEXCOORD_0 and _1
+  std::vector<Rgba> colors;                             // COLOR_0, linear; a = coverage
+  float min_alpha = 1;                                  // smallest colors[].a, 1 without colours
+  Box bounds;                                           // object space
+};
+
+/// An image as it was in the file: decoded only when a pyramid of it is needed.
+struct EncodedImage {
+  std::string name;                     // look-document name
+  std::shared_ptr<const Bytes> bytes;   // PNG or JPEG; Radiance HDR or OpenEXR for environments
+};
+
+/// Everything a look document refers to by name but does not contain.
+struct Assets {
+  std::deque<Mesh> meshes;  // indexed by MeshId; addresses stay valid when meshes are added
+  std::map<std::string, std::vector<MeshId>, std::less<>> mesh_primitives;  // look name of a mesh -> its primitives
+  std::map<std::string, EncodedImage, std::less<>> images;                  // by look name
+};
+
+}  // namespace relook

@@ -1,0 +1,67 @@
+#include "scene/surface_optics.h"
+
+#include <algorithm>
+
+namespace relook {
+namespace {
+
+/// Smallest and largest linear value that a slot multiplies its factor by; (1, 1) for an empty slot.
+std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot) {
+  switch (slot.kind) {
+    case TextureKind::image:
+      return {slot.pyramid->smallest, slot.pyramid->largest};
+    case TextureKind::procedural: {
+      const Color a = slot.procedural.color1, b = slot.procedural.color2;
+      return {Rgba(std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z), 1),
+              Rgba(std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z), 1)};
+    }
+    case TextureKind::none:
+      break;
+  }
+  return {Rgba(1, 1, 1, 1), Rgba(1, 1, 1, 1)};
+}
+
+bool lets_light_past(const Material& m, const Mesh& mesh) {
+  if (m.alpha_mode != AlphaMode::blend) return false;
+  return m.base_color.a * texture_range(m.slot(Slot::base_color)).first.a * mesh.min_alpha < 1;
+}
+
+SurfaceOptics metallic_roughness_optics(const Material& m) {
+  const auto [rough_min, rough_max] = texture_range(m.slot(Slot::metallic_roughness));
+  SurfaceOptics optics;
+  const bool has_metal = m.metallic * rough_max.b > 0;
+  const bool has_dielectric = m.metallic * rough_min.b < 1;
+  const bool has_specular = m.specular * texture_range(m.slot(Slot::specular)).second.a > 0;
+  optics.reflects = m.roughness * rough_min.g < kMirrorThreshold && (has_metal || has_specular);
+  optics.coat_reflects = m.clearcoat * texture_range(m.slot(Slot::clearcoat)).second.r > 0 &&
+                         m.clearcoat_roughness * texture_range(m.slot(Slot::clearcoat_roughness)).first.g < kMirrorThreshold;
+  optics.refracts = m.transmission * texture_range(m.slot(Slot::transmission)).second.r > 0 && has_dielectric;
+  optics.volume = optics.refracts && m.thickness > 0;
+  optics.bent = optics.volume;
+  optics.dielectric_cut = optics.refracts && !has_metal;
+  return optics;
+}
+
+SurfaceOptics blinn_phong_optics(const Material& m) {
+  SurfaceOptics optics;
+  optics.reflects = m.reflection > 0;
+  optics.refracts = m.refraction > 0;
+  optics.bent = optics.refracts;
+  optics.transparent = m.transparency > 0;
+  return optics;
+}
+
+}  // namespace
+
+SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
+  SurfaceOptics optics;
+  if (material.model == IlluminationModel::metallic_roughness) optics = metallic_roughness_optics(material);
+  if (material.model == IlluminationModel::blinn_phong) optics = blinn_phong_optics(material);
+  optics.transparent = optics.transparent || lets_light_past(material, mesh);
+  optics.cut_out = material.alpha_mode == AlphaMode::mask;
+  optics.passes_light = optics.refracts || optics.transparent;
+  optics.ior = optics.refracts ? std::max(material.ior, 1.0F) : 1;
+  return optics;
+}
+
+}  // namespace relook

@@ -1,0 +1,31 @@
+// Which rays a hit on a surface spawns, and whether light passes through: the part of a material that decides the shape
+// of ray trees. A pure function of the material and the mesh, never of the hit, so that "optical" (Table 1) can be told
+// from values: an edit is optical exactly when this, or what bends the spawned rays, changes.
+#pragma once
+#include "scene/material.h"
+#include "scene/mesh.h"
+
+namespace relook {
+
+/// Surfaces rougher than this everywhere spawn no mirror ray; below it the mirror weight fades in (SHADING.md).
+inline constexpr float kMirrorThreshold = 0.25F;
+
+struct SurfaceOptics {
+  bool reflects = false;        // a mirror ray about the shading normal
+  bool coat_reflects = false;   // a mirror ray about the clearcoat normal
+  bool refracts = false;        // a ray through the surface: bent, or straight when thin-walled
+  bool bent = false;            // refracts by Snell's law with `ior`
+  bool transparent = false;     // a straight ray weighted by 1 - coverage
+  bool volume = false;          // Beer attenuation on the inside
+  bool dielectric_cut = false;  // the Fresnel terms of its branches count towards the cut-off
+  bool passes_light = false;    // shadow segments are tinted, not blocked
+  bool cut_out = false;         // alpha MASK: holes in visibility
+  float ior = 1;                // 1 unless refracts
+
+  [[nodiscard]] bool spawns() const { return reflects || coat_reflects || refracts || transparent; }
+  bool operator==(const SurfaceOptics&) const = default;
+};
+
+[[nodiscard]] SurfaceOptics surface_optics(const Material& material, const Mesh& mesh);
+
+}  // namespace relook

@@ -1,0 +1,44 @@
+// Mip pyramids and our own trilinear sampler (a library call costs as much as several rays). Texture values are pure
+// functions of (uv, level): the same bits on every machine.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/math.h"
+
+namespace relook {
+
+/// How the stored texels become linear values.
+enum class TexelFormat : std::uint8_t {
+  srgb8,    // 4 bytes RGBA, RGB sRGB-encoded
+  linear8,  // 4 bytes RGBA, value / 255
+  float32,  // 4 floats RGBA, linear (16-bit and HDR images)
+};
+
+/// A mip pyramid of RGBA texels, level 0 first, each level half the size of the one before (rounded down, at least 1).
+struct TexturePyramid {
+  struct Level {
+    std::uint32_t width = 0, height = 0;
+    std::uint64_t offset = 0;  // in texels, from the start of the texel array; row 0 on top
+  };
+  TexelFormat format = TexelFormat::srgb8;
+  std::vector<Level> levels;
+  std::vector<std::uint8_t> texels8;  // srgb8, linear8: 4 per texel
+  std::vector<float> texels32;        // float32: 4 per texel
+  Rgba smallest, largest;             // over level 0, linear: what a parameter times this texture can reach
+};
+
+enum class Wrap : std::uint8_t { repeat, clamp, mirror };
+
+/// Trilinear lookup. uv: glTF convention (origin at the upper left texel corner); level: log2 of the footprint in texels
+/// of level 0, clamped to the pyramid; nearest: magnification takes the nearest texel. Non-finite uv reads (0, 0).
+[[nodiscard]] Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, Wrap wrap_s, Wrap wrap_t, bool nearest);
+
+/// Builds the pyramid from level 0. texels: width * height * 4 values in [0, 255], row 0 on top. Box filter in the linear
+/// domain.
+[[nodiscard]] TexturePyramid build_pyramid(TexelFormat format, std::uint32_t width, std::uint32_t height,
+                                           std::vector<std::uint8_t> texels);
+[[nodiscard]] TexturePyramid build_pyramid(std::uint32_t width, std::uint32_t height, std::vector<float> texels);
+
+}  // namespace relook

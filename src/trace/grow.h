@@ -1,0 +1,66 @@
+// Grows ray trees: by tracing against the whole scene, from stored paths and hits, or by updating what is stored after a
+// change of the scene (paper 2.2): all three give the same nodes for the same scene.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "trace/path_cursor.h"
+#include "trace/tracer.h"
+#include "trace/tree_block.h"
+
+namespace relook {
+
+struct GrowCounters {
+  std::uint64_t ray_updates = 0;     // rays traced against the whole scene
+  std::uint64_t shadow_updates = 0;  // shadow segments traced against the whole scene
+  std::uint64_t ray_tests = 0;       // stored segments tested against the selection
+};
+
+/// What all growing needs.
+struct GrowScene {
+  const RayScene& scene;
+  const Tracer::TopLevel* level = nullptr;  // the whole scene; null if nothing is traced
+  std::uint32_t max_depth = 6;
+};
+
+/// Appends the ray tree of one sample, traced. Returns the index of its root in `block`.
+std::uint32_t trace_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, TreeBlock& block,
+                         GrowCounters& counters);
+
+/// A stored ray tree being walked.
+struct StoredTree {
+  PathCursor cursor;
+  const Hit* hits;
+};
+
+/// Appends the ray tree of one sample from its path and hits. Requires: the scene is the one they were recorded in.
+std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
+                          TreeBlock& block);
+
+/// What changed between the scene of the stored trees and the scene as it is now, in terms of rays.
+struct RayChange {
+  enum Flag : std::uint8_t {
+    moved = 1,      // hits on the object are not valid any more; it may be met elsewhere
+    shadows = 2,    // it blocks or filters light differently (moved objects too)
+    respawns = 4,   // its hits stay, but other rays may leave from them
+  };
+  std::vector<std::uint8_t> objects;                // flags by ObjectId
+  std::vector<RayObject> before;                    // values before the change of flagged objects
+  std::vector<std::uint32_t> before_index;          // by ObjectId, into `before`
+  Tracer::TopLevel moved_after;                     // moved objects where they are now
+  Tracer::TopLevel shadows_before, shadows_after;   // objects with flag `shadows`
+  std::vector<LightId> old_lights;                  // light order of the stored trees
+  std::vector<std::uint32_t> old_light_index;       // by place in the new light order; kNoNode: new or moved light
+  bool lights_changed = false;                      // any light added, deleted, moved or reordered
+
+  [[nodiscard]] std::uint8_t flags(ObjectId id) const { return objects[id.index()]; }
+};
+
+/// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `changed` is set
+/// to true if any node, hit or shadow state differs from what is stored, or a light that reaches a node has moved.
+std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const SpawnedRay& primary,
+                          std::uint32_t sample, StoredTree stored, TreeBlock& block, GrowCounters& counters,
+                          bool& changed);
+
+}  // namespace relook

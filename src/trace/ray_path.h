@@ -1,0 +1,63 @@
+// Ray paths (paper 2.2): the ordered tree of objects that a sample's rays meet, with branch kinds and shadow states,
+// interned so that equal paths share one id. Hits (PDI) are not part of it: see ray_tree.h.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "base/id.h"
+
+namespace relook {
+
+/// How a ray left its parent. The numbers are on disk and never change.
+enum class Branch : std::uint8_t { reflection = 0, coat = 1, refraction = 2, transparency = 3, primary = 4 };
+inline constexpr std::size_t kBranches = 4;  // those that a hit can spawn
+
+/// What stands between a hit and one light. b = 0 of the paper's shadow counters (4.2): one flag for opaque blockers.
+enum class ShadowState : std::uint8_t {
+  facing_away = 0,  // the light is below the geometric surface: no segment
+  open = 1,         // nothing in between
+  filtered = 2,     // transparent blockers only: they follow in the path, from the hit towards the light
+  blocked = 3,      // at least one opaque blocker
+};
+
+/// Interned paths. A path is a sequence of words, nodes in preorder, children in the order of Branch:
+///   node     object index (kMissWord: the ray left the scene)
+///            branch mask of spawned rays (bits 0..3) | inside flag (bit 4) | Fresnel-cut mask (bits 8..11)   [hits only]
+///   lights   two bits per living light in the scene's light order, packed 16 to a word                      [hits only]
+///   filters  for every `filtered` light, in order: count, then that many object indices                     [hits only]
+/// Invariant: ids are dense, in order of first insertion; equal sequences have equal ids.
+class PathTable {
+ public:
+  static constexpr std::uint32_t kMissWord = 0xFFFFFFFFU;
+
+  PathId intern(std::span<const std::uint32_t> words);
+  [[nodiscard]] std::span<const std::uint32_t> words(PathId id) const {
+    return {words_.data() + offsets_[id.index()], offsets_[id.index() + 1] - offsets_[id.index()]};
+  }
+  [[nodiscard]] std::size_t size() const { return offsets_.size() - 1; }
+  [[nodiscard]] std::size_t bytes() const;
+
+  // For the cache: the whole table as two columns.
+  [[nodiscard]] std::span<const std::uint32_t> all_words() const { return words_; }
+  [[nodiscard]] std::span<const std::uint64_t> all_offsets() const { return offsets_; }
+  /// Rebuilds a table from its columns. Requires: offsets start at 0, increase, end at words.size().
+  static PathTable from_columns(std::vector<std::uint32_t> words, std::vector<std::uint64_t> offsets);
+
+ private:
+  [[nodiscard]] std::uint64_t hash_of(std::span<const std::uint32_t> words) const;
+
+  std::vector<std::uint32_t> words_;
+  std::vector<std::uint64_t> offsets_{0};               // [size() + 1]
+  std::unordered_multimap<std::uint64_t, PathId> ids_;  // by hash of the words
+};
+
+/// Number of hits (nodes and filters) that a ray tree with this path stores; and sentences about what is malformed for
+/// `objects` objects and `lights` lights (empty: sound). A sound path can be walked without further checks.
+[[nodiscard]] std::size_t hit_count(std::span<const std::uint32_t> words, std::size_t lights);
+[[nodiscard]] std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words, std::size_t objects,
+                                                         std::size_t lights);
+
+}  // namespace relook

@@ -1,0 +1,73 @@
+#include "trace/ray_scene.h"
+
+#include <algorithm>
+
+#include "scene/displacement.h"
+
+namespace relook {
+namespace {
+
+Imath::M33f normal_matrix(const Transform& m) {
+  // Cofactors of the linear part: the inverse transpose up to the determinant, whose sign is handled by `flipped`.
+  const auto cofactor = [&](int r0, int c0, int r1, int c1) { return m[r0][c0] * m[r1][c1] - m[r0][c1] * m[r1][c0]; };
+  return Imath::M33f(cofactor(1, 1, 2, 2), cofactor(1, 2, 2, 0), cofactor(1, 0, 2, 1),  //
+                     cofactor(2, 1, 0, 2), cofactor(2, 2, 0, 0), cofactor(2, 0, 0, 1),  //
+                     cofactor(0, 1, 1, 2), cofactor(0, 2, 1, 0), cofactor(0, 0, 1, 1));
+}
+
+float determinant(const Transform& m, const Imath::M33f& cofactors) {
+  return m[0][0] * cofactors[0][0] + m[0][1] * cofactors[0][1] + m[0][2] * cofactors[0][2];
+}
+
+}  // namespace
+
+RayScene::RayScene(const Scene& scene) : scene_(&scene) {
+  for (const Material& material : scene.materials) materials_.push_back(std::make_shared<const Material>(material));
+  objects_.reserve(scene.objects.size());
+  for (const Object& object : scene.objects)
+    objects_.push_back(make_object(scene, object, scene.material(object.material)));
+}
+
+void RayScene::update(const Scene& scene, const SceneDelta& delta) {
+  scene_ = &scene;
+  std::vector<bool> stale(scene.objects.size(), false);
+  materials_.resize(scene.materials.size());
+  std::vector<bool> stale_material(scene.materials.size(), false);
+  for (const auto& change : delta.materials) {
+    materials_[change.id.index()] = std::make_shared<const Material>(scene.material(change.id));
+    stale_material[change.id.index()] = true;
+  }
+  for (std::size_t i = 0; i < materials_.size(); ++i)
+    if (!materials_[i]) materials_[i] = std::make_shared<const Material>(scene.materials[i]);
+  for (const auto& change : delta.objects) stale[change.id.index()] = true;
+  objects_.resize(scene.objects.size());
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (stale[i] || stale_material[object.material.index()] || !objects_[i].mesh)
+      objects_[i] = make_object(scene, object, scene.material(object.material));
+  }
+}
+
+RayObject RayScene::make_object(const Scene& scene, const Object& object, const Material& material) const {
+  RayObject ray_object;
+  ray_object.mesh = mesh_of(scene, object);
+  const std::size_t m = object.material.index();
+  ray_object.material = m < materials_.size() && materials_[m] && *materials_[m] == material
+                            ? materials_[m]
+                            : std::make_shared<const Material>(material);
+  ray_object.to_world = object.to_world;
+  ray_object.normal_to_world = normal_matrix(object.to_world);
+  ray_object.flipped = determinant(object.to_world, ray_object.normal_to_world) < 0;
+  ray_object.alive = object.alive;
+  ray_object.key = object.key;
+  ray_object.optics = surface_optics(material, *ray_object.mesh);
+  return ray_object;
+}
+
+std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object) const {
+  const Mesh& mesh = scene.mesh(object.mesh);
+  if (object.displacement && object.alive) return std::make_shared<const Mesh>(displaced(mesh, *object.displacement));
+  return {scene.assets, &mesh};
+}
+
+}  // namespace relook

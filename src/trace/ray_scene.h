@@ -1,0 +1,48 @@
+// The scene frozen for rays: per object what intersection, surface points and spawning need, derived from Scene. A change
+// of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
+#pragma once
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "scene/scene.h"
+#include "scene/surface_optics.h"
+
+namespace relook {
+
+/// One object, ready for rays.
+struct RayObject {
+  std::shared_ptr<const Mesh> mesh;  // displaced, if the object is
+  std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
+  Transform to_world;
+  Imath::M33f normal_to_world;       // inverse transpose of the linear part, not normalised
+  bool flipped = false;              // negative determinant: counter-clockwise triangles are back faces
+  bool alive = false;
+  std::uint64_t key = 0;             // orders coincident hits
+  SurfaceOptics optics;
+};
+
+class RayScene {
+ public:
+  RayScene() = default;
+  explicit RayScene(const Scene& scene);
+
+  /// Takes over what `delta` changed; `scene` is the state after it.
+  void update(const Scene& scene, const SceneDelta& delta);
+
+  [[nodiscard]] const RayObject& object(ObjectId id) const { return objects_[id.index()]; }
+  [[nodiscard]] std::size_t size() const { return objects_.size(); }
+  [[nodiscard]] const Scene& scene() const { return *scene_; }
+
+  /// The entry of an object whose Object value and materials were others: for the selection before an edit.
+  [[nodiscard]] RayObject make_object(const Scene& scene, const Object& object, const Material& material) const;
+
+ private:
+  [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object) const;
+
+  const Scene* scene_ = nullptr;
+  std::vector<RayObject> objects_;  // by ObjectId
+  std::vector<std::shared_ptr<const Material>> materials_;  // by MaterialId, shared by their objects
+};
+
+}  // namespace relook

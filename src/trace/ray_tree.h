@@ -1,0 +1,35 @@
+// Ray trees (paper 2.2) in their compact form: per hit the primitive and the barycentrics; everything else follows from
+// the path, the object and the parent. Stored per tile, sample by sample.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/id.h"
+
+namespace relook {
+
+/// Where a ray met its object: the paper's point-dependent information in 12 bytes.
+struct Hit {
+  std::uint32_t primitive = 0;
+  float u = 0, v = 0;  // weights of the triangle's second and third vertex
+  bool operator==(const Hit&) const = default;
+};
+
+/// Side of the square image tiles, in pixels: the unit of work, of storage and of EXR tiles.
+inline constexpr std::uint32_t kTileSize = 64;
+
+/// The ray trees of one tile. Samples are numbered pixel by pixel (row by row inside the tile, the tile clipped to the
+/// image), all samples of a pixel together. Hits of a sample: nodes in preorder, each followed by the filters of its
+/// lights, as in the path.
+struct TileTrees {
+  std::vector<PathId> paths;             // [samples]
+  std::vector<std::uint32_t> first_hit;  // [samples + 1] into hits
+  std::vector<Hit> hits;
+
+  [[nodiscard]] std::span<const Hit> hits_of(std::size_t sample) const {
+    return {hits.data() + first_hit[sample], first_hit[sample + 1] - first_hit[sample]};
+  }
+};
+
+}  // namespace relook

@@ -1,0 +1,203 @@
+#include "trace/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/portable_math.h"
+#include "scene/procedural.h"
+
+namespace relook {
+namespace {
+
+struct Weights {
+  float w0, w1, w2;
+};
+Weights weights(const Hit& hit) { return {1.0F - hit.u - hit.v, hit.u, hit.v}; }
+
+template <class T>
+T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& triangle, const Hit& hit) {
+  const auto [w0, w1, w2] = weights(hit);
+  return values[triangle[0]] * w0 + values[triangle[1]] * w1 + values[triangle[2]] * w2;
+}
+
+Point to_world(const Transform& m, const Point& p) {
+  return Point(p.x * m[0][0] + p.y * m[1][0] + p.z * m[2][0] + m[3][0],
+               p.x * m[0][1] + p.y * m[1][1] + p.z * m[2][1] + m[3][1],
+               p.x * m[0][2] + p.y * m[1][2] + p.z * m[2][2] + m[3][2]);
+}
+Direction vector_to_world(const Transform& m, const Direction& v) {
+  return Direction(v.x * m[0][0] + v.y * m[1][0] + v.z * m[2][0], v.x * m[0][1] + v.y * m[1][1] + v.z * m[2][1],
+                   v.x * m[0][2] + v.y * m[1][2] + v.z * m[2][2]);
+}
+
+/// v / |v|, or `otherwise` when v is too short or too long to have a direction.
+Direction unit_or(const Direction& v, const Direction& otherwise) {
+  const float length2 = v.dot(v);
+  return length2 > 1e-30F && length2 < 1e30F ? v / std::sqrt(length2) : otherwise;
+}
+
+/// Scaled by its largest component first, so that tiny and huge triangles keep their normals.
+Normal unit_normal(Normal n) {
+  const float largest = std::max({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
+  if (!(largest > 0)) return Normal(0, 0, 1);
+  return unit_or(n / largest, Normal(0, 0, 1));
+}
+
+float offset_of(const Transform& m, const Point& local) {
+  // A bound of the magnitudes that were added up to give the world position; its last bits are what may be wrong.
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max(largest, std::fabs(local.x * m[0][axis]) + std::fabs(local.y * m[1][axis]) +
+                                    std::fabs(local.z * m[2][axis]) + std::fabs(m[3][axis]));
+  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place of `largest`
+  return largest * kUlps;
+}
+
+Mapping effective_mapping(const Mesh& mesh, const TextureSlot& slot) {
+  if (slot.mapping != Mapping::uv || !mesh.uv[slot.texcoord].empty()) return slot.mapping;
+  return slot.kind == TextureKind::procedural ? Mapping::solid : Mapping::planar;
+}
+
+/// Coordinates in [0, 1] over the mesh's bounds, axis `axis` last.
+Point bounds_coordinates(const Mesh& mesh, const Point& local, int axis) {
+  const Point size = mesh.bounds.size();
+  Point unit;
+  for (int i = 0; i < 3; ++i) unit[i] = size[i] > 0 ? (local[i] - mesh.bounds.min[i]) / size[i] : 0.5F;
+  return Point(unit[(axis + 1) % 3], unit[(axis + 2) % 3], unit[axis]);
+}
+
+Point project(const Mesh& mesh, const Point& local, Mapping mapping, int axis) {
+  const Point unit = bounds_coordinates(mesh, local, axis);
+  if (mapping == Mapping::planar) return Point(unit.x, unit.y, 0);
+  const Direction centred = unit * 2.0F - Point(1, 1, 1);
+  const float around = portable_atan2_turns(centred.y, centred.x) + 0.5F;
+  if (mapping == Mapping::cylindrical) return Point(around, 1.0F - unit.z, 0);
+  const float length = std::sqrt(centred.dot(centred));
+  return Point(around, 0.5F - 2.0F * portable_asin_turns(length > 0 ? centred.z / length : 0), 0);
+}
+
+Point vertex_coordinates(const Mesh& mesh, const TextureSlot& slot, Mapping mapping, std::uint32_t vertex) {
+  if (mapping == Mapping::uv) return Point(mesh.uv[slot.texcoord][vertex].x, mesh.uv[slot.texcoord][vertex].y, 0);
+  return project(mesh, mesh.positions[vertex], mapping, slot.axis);
+}
+
+Uv transformed(const TextureSlot& slot, const Point& p) {
+  // KHR_texture_transform: scale, then rotate counter-clockwise, then move.
+  const float c = portable_sin_turns(slot.rotation * 0.15915494F + 0.25F), s = portable_sin_turns(slot.rotation * 0.15915494F);
+  const float x = p.x * slot.scale.x, y = p.y * slot.scale.y;
+  return Uv(c * x + s * y + slot.offset.x, -s * x + c * y + slot.offset.y);
+}
+
+}  // namespace
+
+SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction direction) {
+  const Mesh& mesh = *object.mesh;
+  const auto& triangle = mesh.triangles[hit.primitive];
+  SurfacePoint point;
+  point.local = interpolate(mesh.positions, triangle, hit);
+  point.position = to_world(object.to_world, point.local);
+  point.offset = offset_of(object.to_world, point.local);
+  const Point& a = mesh.positions[triangle[0]];
+  const Normal cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
+  Normal front = unit_normal(unit_normal(cross) * object.normal_to_world);
+  if (object.flipped) front = -front;
+  point.inside = front.dot(direction) > 0;
+  point.geometric = point.inside ? -front : front;
+  point.shading = point.geometric;
+  if (!mesh.normals.empty()) {
+    const Normal smooth = interpolate(mesh.normals, triangle, hit) * object.normal_to_world;
+    const float largest = std::max({std::fabs(smooth.x), std::fabs(smooth.y), std::fabs(smooth.z)});
+    if (largest > 0) point.shading = unit_or(smooth / largest, point.geometric);
+    if (point.shading.dot(point.geometric) < 0) point.shading = -point.shading;
+  }
+  return point;
+}
+
+TextureCoordinates texture_coordinates(const RayObject& object, const Hit& hit, const Point& local,
+                                       const TextureSlot& slot) {
+  const Mesh& mesh = *object.mesh;
+  const Mapping mapping = effective_mapping(mesh, slot);
+  if (mapping == Mapping::solid) return {local, 0};
+  const auto& triangle = mesh.triangles[hit.primitive];
+  const Point a = vertex_coordinates(mesh, slot, mapping, triangle[0]);
+  const Point b = vertex_coordinates(mesh, slot, mapping, triangle[1]) - a;
+  const Point c = vertex_coordinates(mesh, slot, mapping, triangle[2]) - a;
+  const Point& p = mesh.positions[triangle[0]];
+  const Direction e1 = vector_to_world(object.to_world, mesh.positions[triangle[1]] - p);
+  const Direction e2 = vector_to_world(object.to_world, mesh.positions[triangle[2]] - p);
+  const Direction cross = e1.cross(e2);
+  const float world_area = std::sqrt(cross.dot(cross));
+  const float texture_area = std::fabs(b.x * c.y - b.y * c.x);
+  TextureCoordinates at;
+  at.position = mapping == Mapping::uv ? a + b * hit.u + c * hit.v : project(mesh, local, mapping, slot.axis);
+  at.area_ratio = world_area > 0 ? texture_area / world_area : 0;
+  return at;
+}
+
+Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
+  if (slot.kind == TextureKind::procedural) {
+    if (slot.mapping == Mapping::solid || at.area_ratio == 0) return evaluate(slot.procedural, at.position);
+    const Uv uv = transformed(slot, at.position);
+    return evaluate(slot.procedural, Point(uv.x, uv.y, 0));
+  }
+  const auto& base = slot.pyramid->levels.front();
+  const float texels = static_cast<float>(base.width) * static_cast<float>(base.height) *
+                       std::fabs(slot.scale.x * slot.scale.y) * at.area_ratio;
+  const float level = 0.5F * portable_log2(texels * footprint * footprint);
+  return sample(*slot.pyramid, transformed(slot, at.position), level, slot.wrap_s, slot.wrap_t, slot.nearest);
+}
+
+TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const SurfacePoint& point, const TextureSlot& slot) {
+  const Mesh& mesh = *object.mesh;
+  const auto& triangle = mesh.triangles[hit.primitive];
+  Direction tangent;
+  float handedness = 1;
+  if (!mesh.tangents.empty() && slot.mapping == Mapping::uv && slot.texcoord == 0) {
+    const Imath::V4f t = interpolate(mesh.tangents, triangle, hit);
+    tangent = vector_to_world(object.to_world, Direction(t.x, t.y, t.z));
+    handedness = t.w < 0 ? -1.0F : 1.0F;
+  } else {
+    const Mapping mapping = effective_mapping(mesh, slot);
+    if (mapping == Mapping::solid) return {};
+    const Point a = vertex_coordinates(mesh, slot, mapping, triangle[0]);
+    const Point b = vertex_coordinates(mesh, slot, mapping, triangle[1]) - a;
+    const Point c = vertex_coordinates(mesh, slot, mapping, triangle[2]) - a;
+    const Point& p = mesh.positions[triangle[0]];
+    const float area = b.x * c.y - b.y * c.x;
+    const Direction gradient = (mesh.positions[triangle[1]] - p) * c.y - (mesh.positions[triangle[2]] - p) * b.y;
+    tangent = vector_to_world(object.to_world, area < 0 ? -gradient : gradient);
+    handedness = area < 0 ? 1.0F : -1.0F;  // v runs down the image: unmirrored triangles have negative areas
+  }
+  if (object.flipped) handedness = -handedness;
+  const Normal front = point.inside ? -point.shading : point.shading;
+  const float largest = std::max({std::fabs(tangent.x), std::fabs(tangent.y), std::fabs(tangent.z)});
+  if (!(largest > 0)) return {};
+  tangent = tangent / largest;
+  tangent = unit_or(tangent - front * front.dot(tangent), Direction(0, 0, 0));
+  return {tangent, front.cross(tangent) * handedness};
+}
+
+Normal mapped_normal(const TangentFrame& frame, const SurfacePoint& point, Rgba texel, float scale) {
+  const Normal front = point.inside ? -point.shading : point.shading;
+  const float x = (texel.r * 2.0F - 1.0F) * scale, y = (texel.g * 2.0F - 1.0F) * scale, z = texel.b * 2.0F - 1.0F;
+  Normal bent = unit_or(frame.tangent * x + frame.bitangent * y + front * z, front);
+  if (point.inside) bent = -bent;
+  return bent.dot(point.geometric) > 0 ? bent : point.shading;
+}
+
+Rgba vertex_color(const Mesh& mesh, const Hit& hit) {
+  return mesh.colors.empty() ? Rgba(1, 1, 1, 1) : interpolate(mesh.colors, mesh.triangles[hit.primitive], hit);
+}
+
+bool is_covered(const RayObject& object, const Hit& hit) {
+  const Material& material = *object.material;
+  float alpha = material.base_color.a * vertex_color(*object.mesh, hit).a;
+  const TextureSlot& slot = material.slot(Slot::base_color);
+  if (slot.kind != TextureKind::none) {
+    const Point local = interpolate(object.mesh->positions, object.mesh->triangles[hit.primitive], hit);
+    alpha *= texture_value(slot, texture_coordinates(object, hit, local, slot), 0).a;
+  }
+  return alpha >= material.alpha_cutoff;
+}
+
+}  // namespace relook

@@ -1,0 +1,84 @@
+// Rays against triangles. The only interface to Embree: one bottom level per mesh, one instance per object, top levels
+// for the whole scene and for selections over the same bottom levels. Results depend on the ray and the objects alone:
+// never on build order, thread count, or on what else is in the top level. Coincident hits are ordered by (t, object
+// key, primitive).
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "trace/ray_scene.h"
+#include "trace/ray_tree.h"
+
+namespace relook {
+
+struct Ray {
+  Point origin;
+  Direction direction;       // any length; t counts in its lengths
+  float t_max = std::numeric_limits<float>::infinity();
+};
+
+/// The nearest hit of a ray. `object` none: nothing was met.
+struct Meeting {
+  ObjectId object = ObjectId::none();
+  Hit hit;
+  float t = std::numeric_limits<float>::infinity();
+  std::uint64_t key = 0;
+  [[nodiscard]] bool nearer_than(const Meeting& other) const {
+    if (t != other.t) return t < other.t;
+    if (key != other.key) return key < other.key;
+    return hit.primitive < other.hit.primitive;
+  }
+};
+
+/// A transparent surface that a shadow segment crosses.
+struct Crossing {
+  ObjectId object;
+  Hit hit;
+  float t = 0;
+  std::uint64_t key = 0;
+};
+
+class Tracer {
+ public:
+  /// A set of objects that rays can be shot at.
+  class TopLevel {
+   public:
+    TopLevel();
+    ~TopLevel();
+    TopLevel(TopLevel&&) noexcept;
+    TopLevel& operator=(TopLevel&&) noexcept;
+    [[nodiscard]] bool empty() const;
+
+   private:
+    friend class Tracer;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+  };
+  struct Placed {
+    ObjectId id;
+    const RayObject* object;  // outlives the top level
+  };
+
+  Tracer();
+  ~Tracer();
+  Tracer(const Tracer&) = delete;
+  Tracer& operator=(const Tracer&) = delete;
+
+  /// Objects that are not alive are left out. Bottom levels are made once per mesh and kept while an object uses them.
+  [[nodiscard]] TopLevel build(std::span<const Placed> objects);
+  [[nodiscard]] TopLevel build(const RayScene& scene);
+
+  /// Rays with a component that is not finite, or larger than 1e18, meet nothing.
+  [[nodiscard]] static Meeting intersect(const TopLevel& level, const Ray& ray);
+
+  /// False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent surfaces in
+  /// order. `crossings` is cleared first.
+  [[nodiscard]] static bool passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relook

@@ -1,0 +1,184 @@
+#include "trace/tree_block.h"
+
+#include <cmath>
+
+namespace relook {
+namespace {
+
+constexpr float kFresnelCut = 1e-3F;
+
+/// Unpolarised reflectance of a dielectric boundary; eta: index behind over index in front. 1 at total reflection.
+float dielectric_reflectance(float cos_in, float eta) {
+  const float sin2 = (1.0F - cos_in * cos_in) / (eta * eta);
+  if (sin2 >= 1.0F) return 1.0F;
+  const float cos_out = std::sqrt(1.0F - sin2);
+  const float s = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
+  const float p = (cos_out - eta * cos_in) / (cos_out + eta * cos_in);
+  return 0.5F * (s * s + p * p);
+}
+
+float coat_reflectance(float cosine) {
+  const float m = 1.0F - cosine;
+  return 0.04F + 0.96F * (m * m * m * m * m);
+}
+
+Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, float scale) {
+  const TextureSlot& map = object.material->slot(slot);
+  if (map.kind == TextureKind::none) return node.point.shading;
+  const Rgba texel =
+      texture_value(map, texture_coordinates(object, node.hit, node.point.local, map), node.footprint);
+  return mapped_normal(tangent_frame(object, node.hit, node.point, map), node.point, texel, scale);
+}
+
+Direction unit(const Direction& v) { return v / std::sqrt(v.dot(v)); }
+
+/// The mirror direction, kept on the outer side of the geometric surface.
+Direction mirrored(const Direction& d, const Normal& n, const Normal& geometric) {
+  Direction r = d - n * (2.0F * d.dot(n));
+  const float height = r.dot(geometric);
+  if (height < 0) r = r - geometric * (2.0F * height);
+  return unit(r);
+}
+
+/// Collects the rays of one hit.
+class Spawner {
+ public:
+  Spawner(const RayNode& node, std::uint32_t max_depth) : node_(node), may_spawn_(node.ray.generation < max_depth) {}
+
+  /// `side`: +1 leaves on the side of the incoming ray, -1 on the other. `fresnel`: factor towards the cut-off.
+  void add(Branch branch, const Direction& direction, float side, float fresnel) {
+    if (!may_spawn_) return;
+    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(branch));
+    const float product = node_.ray.fresnel_product * fresnel;
+    if (product < kFresnelCut) {
+      spawned_.cut_mask |= bit;
+      return;
+    }
+    SpawnedRay& ray = spawned_.rays[static_cast<std::size_t>(branch)];
+    ray.origin = node_.point.position + node_.point.geometric * (side * node_.point.offset);
+    ray.direction = direction;
+    ray.cone_width = node_.ray.cone_width + node_.ray.cone_spread * node_.length;
+    ray.cone_spread = node_.ray.cone_spread;
+    ray.fresnel_product = product;
+    ray.generation = static_cast<std::uint8_t>(node_.ray.generation + 1);
+    ray.branch = branch;
+    spawned_.mask |= bit;
+  }
+  [[nodiscard]] const Spawned& result() const { return spawned_; }
+
+ private:
+  const RayNode& node_;
+  bool may_spawn_;
+  Spawned spawned_;
+};
+
+}  // namespace
+
+Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth) {
+  const SurfaceOptics& optics = object.optics;
+  Spawner spawner(node, max_depth);
+  if (!optics.spawns()) return spawner.result();
+  const Material& material = *object.material;
+  const Direction d = node.ray.direction;
+  const Normal n = normal_of_slot(node, object, Slot::normal, material.normal_scale);
+  const float cosine = std::fmax(-d.dot(n), 1e-4F);
+  const float eta = node.point.inside && optics.bent ? 1.0F / optics.ior : optics.ior;
+  const float reflectance = optics.refracts ? dielectric_reflectance(std::fmin(cosine, 1.0F), eta) : 1.0F;
+  const float counted = optics.dielectric_cut ? 1.0F : 0.0F;
+  const auto factor = [&](float term) { return 1.0F - counted + counted * term; };
+
+  if (optics.reflects)
+    spawner.add(Branch::reflection, mirrored(d, n, node.point.geometric), 1.0F, factor(reflectance));
+  if (optics.coat_reflects && !node.point.inside) {
+    const Normal coat = normal_of_slot(node, object, Slot::clearcoat_normal, material.clearcoat_normal_scale);
+    spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
+                coat_reflectance(std::fmin(std::fmax(-d.dot(coat), 1e-4F), 1.0F)));
+  }
+  if (optics.refracts && !optics.bent) spawner.add(Branch::refraction, d, -1.0F, factor(1.0F - reflectance));
+  if (optics.bent) {
+    const float c = std::fmin(cosine, 1.0F);
+    const float sin2 = (1.0F - c * c) / (eta * eta);
+    if (sin2 < 1.0F) {
+      const Direction bent = d * (1.0F / eta) + n * (c / eta - std::sqrt(1.0F - sin2));
+      // A bent shading normal may send the ray back to its own side: then it goes straight on.
+      const bool goes_through = bent.dot(node.point.geometric) < 0;
+      spawner.add(Branch::refraction, goes_through ? unit(bent) : d, -1.0F, factor(1.0F - reflectance));
+    }
+  }
+  if (optics.transparent) spawner.add(Branch::transparency, d, -1.0F, 1.0F);
+  return spawner.result();
+}
+
+void complete(RayNode& node, const RayObject& object) {
+  node.point = surface_point(object, node.hit, node.ray.direction);
+  const Direction way = node.point.position - node.ray.origin;
+  node.length = std::sqrt(way.dot(way));
+  const float width = node.ray.cone_width + node.ray.cone_spread * node.length;
+  node.footprint = width / std::fmax(-node.ray.direction.dot(node.point.geometric), 0.05F);
+}
+
+ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light) {
+  ShadowSegment segment;
+  const bool directional = light.kind == LightKind::directional;
+  const Direction to_light = directional ? -light.direction : light.position - point.position;
+  segment.faces = point.geometric.dot(to_light) > 0;
+  segment.origin = point.position + point.geometric * point.offset;
+  segment.direction = directional ? to_light : light.position - segment.origin;
+  segment.t_max = directional ? std::numeric_limits<float>::infinity() : 1.0F;
+  return segment;
+}
+
+void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSegment& segment, FilterNode* filters,
+                      std::size_t count) {
+  const Direction way = unit(segment.direction);
+  for (std::size_t i = 0; i < count; ++i) {
+    FilterNode& filter = filters[i];
+    const RayObject& object = scene.object(filter.object);
+    filter.point = surface_point(object, filter.hit, way);
+    filter.footprint = node.footprint;  // no finer than what is shaded
+    filter.length_inside = 0;
+    if (!object.optics.volume || !filter.point.inside) continue;
+    Point entry = segment.origin;
+    for (std::size_t j = i; j-- > 0;) {
+      if (filters[j].object != filter.object) continue;
+      entry = filters[j].point.position;
+      break;
+    }
+    const Direction inside = filter.point.position - entry;
+    filter.length_inside = std::sqrt(inside.dot(inside));
+  }
+}
+
+void pack(const TreeBlock& block, std::uint32_t root, std::size_t lights, std::vector<std::uint32_t>& words,
+          std::vector<Hit>& hits) {
+  const std::uint32_t sample = block.nodes[root].sample;
+  for (std::size_t i = root; i < block.nodes.size() && block.nodes[i].sample == sample; ++i) {
+    const RayNode& node = block.nodes[i];
+    if (node.object.is_none()) {
+      words.push_back(PathTable::kMissWord);
+      continue;
+    }
+    std::uint32_t flags = node.point.inside ? 1U << 4 : 0U;
+    for (std::size_t b = 0; b < kBranches; ++b)
+      if (node.child[b] != kNoNode) flags |= 1U << b;
+    flags |= static_cast<std::uint32_t>(node.cut_mask) << 8;
+    words.push_back(node.object.index());
+    words.push_back(flags);
+    hits.push_back(node.hit);
+    const std::size_t states = words.size();
+    words.resize(states + (lights + 15) / 16);
+    for (std::size_t light = 0; light < lights; ++light) {
+      const LightLink& link = block.lights[node.first_light + light];
+      words[states + light / 16] |= static_cast<std::uint32_t>(link.state) << (2 * (light % 16));
+      if (link.state != ShadowState::filtered) continue;
+      words.push_back(link.filters);
+      for (std::uint32_t f = 0; f < link.filters; ++f) {
+        const FilterNode& filter = block.filters[link.first_filter + f];
+        words.push_back(filter.object.index());
+        hits.push_back(filter.hit);
+      }
+    }
+  }
+}
+
+}  // namespace relook

@@ -1,0 +1,107 @@
+// Ray trees in flight: the nodes of some samples with everything that follows from their hits, ready to be shaded, packed
+// into the compact form, or both. Nodes of a sample stand together in preorder, children in the order of Branch.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "trace/ray_path.h"
+#include "trace/surface.h"
+
+namespace relook {
+
+inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
+
+/// A ray on its way: the primary ray of a sample, or one spawned by a hit.
+struct SpawnedRay {
+  Point origin{0, 0, 0};
+  Direction direction{0, 0, -1};  // unit
+  float cone_width = 0;        // metres, at the origin
+  float cone_spread = 0;       // metres per metre
+  float fresnel_product = 1;   // of the dielectric terms so far: the cut-off
+  std::uint8_t generation = 1; // 1: primary
+  Branch branch = Branch::primary;
+};
+
+/// A node of a ray tree: a hit, or the environment when the ray left the scene.
+struct RayNode {
+  std::uint32_t parent = kNoNode;
+  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode};
+  std::uint32_t sample = 0;       // within the tile
+  ObjectId object;                // none: miss
+  Hit hit;
+  SpawnedRay ray;                 // that led here
+  std::uint8_t cut_mask = 0;      // branches that the Fresnel cut-off removed
+  float length = 0;               // metres from the ray's origin
+  float footprint = 0;            // ray-cone width at the hit over the cosine of incidence
+  SurfacePoint point;
+  std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
+};
+
+/// What stands between a node and one light. filters: a range of TreeBlock::filters.
+struct LightLink {
+  ShadowState state = ShadowState::facing_away;
+  std::uint32_t first_filter = 0, filters = 0;
+};
+
+/// A transparent surface on a shadow segment.
+struct FilterNode {
+  ObjectId object;
+  Hit hit;
+  SurfacePoint point;
+  float footprint = 0;
+  float length_inside = 0;  // metres of the segment inside the volume that it leaves here, 0 otherwise
+};
+
+struct TreeBlock {
+  std::vector<RayNode> nodes;
+  std::vector<LightLink> lights;
+  std::vector<FilterNode> filters;
+
+  /// A state to go back to: what was appended since is dropped.
+  struct Mark {
+    std::size_t nodes = 0, lights = 0, filters = 0;
+  };
+  [[nodiscard]] Mark mark() const { return {nodes.size(), lights.size(), filters.size()}; }
+  void rewind(const Mark& mark) {
+    nodes.resize(mark.nodes);
+    lights.resize(mark.lights);
+    filters.resize(mark.filters);
+  }
+  void clear() { rewind({}); }
+};
+
+/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back. A pure function of the node, its
+/// object and the options.
+struct Spawned {
+  std::array<SpawnedRay, kBranches> rays;
+  std::uint8_t mask = 0;      // bit b: rays[b] is there
+  std::uint8_t cut_mask = 0;
+};
+[[nodiscard]] Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth);
+
+/// Fills length, footprint and point of a node whose ray, object and hit are set.
+void complete(RayNode& node, const RayObject& object);
+
+/// The shadow segment from a point to a light: t runs to 1 at a point or spot light.
+struct ShadowSegment {
+  bool faces = false;  // the light is above the geometric surface
+  Point origin{0, 0, 0};
+  Direction direction{0, 0, 1};
+  float t_max = 1;
+};
+[[nodiscard]] ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light);
+/// True where no light is gathered and no segments are kept: the inner side of a volume.
+[[nodiscard]] inline bool is_interface_only(const RayObject& object, const SurfacePoint& point) {
+  return object.optics.volume && point.inside;
+}
+
+/// Completes the filters [first, first + count) of one segment: points and lengths inside volumes.
+void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSegment& segment, FilterNode* filters,
+                      std::size_t count);
+
+/// The path words of the sample whose nodes start at `root`, appended to `words`; its hits appended to `hits`.
+void pack(const TreeBlock& block, std::uint32_t root, std::size_t lights, std::vector<std::uint32_t>& words,
+          std::vector<Hit>& hits);
+
+}  // namespace relook

@@ -1,0 +1,157 @@
+// The oracle's hits: triangles, textures and normals as SHADING.md says under "At a hit".
+#include <cmath>
+
+#include "reference_tracer.h"
+#include "scene/displacement.h"
+#include "scene/procedural.h"
+
+namespace relook {
+namespace {
+
+Imath::V4d values(Rgba c) { return {c.r, c.g, c.b, c.a}; }
+Vec to_world(const Object& object, Vec p) {
+  Vec out;
+  Imath::M44d(object.to_world).multVecMatrix(p, out);
+  return out;
+}
+template <class T>
+T mixed(const T& a, const T& b, const T& c, double u, double v) {
+  return a * static_cast<float>(1 - u - v) + b * static_cast<float>(u) + c * static_cast<float>(v);
+}
+
+}  // namespace
+
+std::vector<WorldTriangle> world_triangles(const Scene& scene, std::uint32_t index) {
+  const Object& object = scene.objects[index];
+  const Mesh mesh =
+      object.displacement ? displaced(scene.mesh(object.mesh), *object.displacement) : scene.mesh(object.mesh);
+  std::vector<WorldTriangle> triangles;
+  for (const auto& [a, b, c] : mesh.triangles)
+    triangles.push_back({to_world(object, Vec(mesh.positions[a])), to_world(object, Vec(mesh.positions[b])),
+                         to_world(object, Vec(mesh.positions[c])), index,
+                         static_cast<std::uint32_t>(triangles.size())});
+  return triangles;
+}
+
+LineHit intersect(const WorldTriangle& triangle, Vec origin, Vec direction, double slack) {
+  const Vec e1 = triangle.b - triangle.a, e2 = triangle.c - triangle.a, p = direction.cross(e2);
+  const double det = e1.dot(p);
+  LineHit hit;
+  if (det == 0) return hit;
+  const Vec s = origin - triangle.a, q = s.cross(e1);
+  hit = {false, e2.dot(q) / det, s.dot(p) / det, direction.dot(q) / det};
+  hit.inside = hit.u >= -slack && hit.v >= -slack && hit.u + hit.v <= 1 + slack;
+  return hit;
+}
+
+const Mesh& ReferenceTracer::mesh_of(std::uint32_t object) const {
+  const auto found = displaced_.find(object);
+  return found != displaced_.end() ? found->second : scene_.mesh(scene_.objects[object].mesh);
+}
+
+bool ReferenceTracer::is_hole(const WorldTriangle& triangle, double u, double v) const {
+  const Material& material = scene_.material(scene_.objects[triangle.object].material);
+  if (material.alpha_mode != AlphaMode::mask) return false;
+  Surface s = surface_at({&triangle, 0, u, v}, {Vec(0, 0, 0), Vec(0, 0, 1), 0, 0});
+  return s.alpha < material.alpha_cutoff;
+}
+
+Imath::V4d ReferenceTracer::texture(const Surface& s, Slot which) const {
+  const TextureSlot& slot = s.material->slot(which);
+  if (slot.kind == TextureKind::none) return {1, 1, 1, 1};
+  const auto& [i, j, k] = s.mesh->triangles[s.triangle->primitive];
+  const auto& column = s.mesh->uv[slot.texcoord];
+  if (slot.mapping == Mapping::solid || (column.empty() && slot.kind == TextureKind::procedural)) {
+    const Point p = mixed(s.mesh->positions[i], s.mesh->positions[j], s.mesh->positions[k], s.u, s.v);
+    return values(evaluate(slot.procedural, p));
+  }
+  const auto transformed = [&](Imath::V2d uv) {  // KHR_texture_transform: scale, then rotate, then shift
+    uv *= Imath::V2d(slot.scale);
+    const double cosine = std::cos(double{slot.rotation}), sine = std::sin(double{slot.rotation});
+    return Imath::V2d(cosine * uv.x + sine * uv.y, cosine * uv.y - sine * uv.x) + Imath::V2d(slot.offset);
+  };
+  const Imath::V2d a = transformed(Imath::V2d(column[i])), b = transformed(Imath::V2d(column[j])),
+                   c = transformed(Imath::V2d(column[k])), uv = a * (1 - s.u - s.v) + b * s.u + c * s.v;
+  const Uv at(static_cast<float>(uv.x), static_cast<float>(uv.y));
+  if (slot.kind == TextureKind::procedural) return values(evaluate(slot.procedural, Point(at.x, at.y, 0)));
+  const TexturePyramid::Level& full = slot.pyramid->levels.front();
+  const double texels = double{1} * full.width * full.height;
+  const double uv_area = std::abs((b - a).cross(c - a));
+  const double world_area = (s.triangle->b - s.triangle->a).cross(s.triangle->c - s.triangle->a).length();
+  const double level = std::log2(s.width / s.incidence) + std::log2(texels * uv_area / world_area) / 2;
+  return values(
+      sample(*slot.pyramid, at, s.with_level ? static_cast<float>(level) : 0, slot.wrap_s, slot.wrap_t, slot.nearest));
+}
+
+Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) const {
+  const TextureSlot& slot = s.material->slot(which);
+  if (slot.kind == TextureKind::none) return s.n;
+  const auto& [i, j, k] = s.mesh->triangles[s.triangle->primitive];
+  const auto& uv = s.mesh->uv[slot.texcoord];
+  const Imath::V2d d1 = Imath::V2d(uv[j] - uv[i]), d2 = Imath::V2d(uv[k] - uv[i]);
+  const Vec e1 = s.triangle->b - s.triangle->a, e2 = s.triangle->c - s.triangle->a;
+  const double det = d1.cross(d2);
+  if (det == 0) return s.n;
+  // glTF: +X of the map runs along u, +Y against v (images are stored top row first).
+  const Vec along_u = (e1 * d2.y - e2 * d1.y) / det, against_v = (e1 * d2.x - e2 * d1.x) / det;
+  const Vec tangent = (along_u - s.n * s.n.dot(along_u)).normalized();
+  Vec bitangent = s.n.cross(tangent);
+  if (bitangent.dot(against_v) < 0) bitangent = -bitangent;
+  const Imath::V4d texel = texture(s, which);
+  const Vec map((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, 2 * texel.z - 1);
+  return (tangent * map.x + bitangent * map.y + s.n * map.z).normalized();
+}
+
+void ReferenceTracer::read_material(Surface& s) const {
+  const Material& m = *s.material;
+  Imath::V4d color(m.base_color.r, m.base_color.g, m.base_color.b, m.base_color.a);
+  color *= texture(s, Slot::base_color);
+  if (!s.mesh->colors.empty()) {
+    const auto& [i, j, k] = s.mesh->triangles[s.triangle->primitive];
+    color *= values(mixed(s.mesh->colors[i], s.mesh->colors[j], s.mesh->colors[k], s.u, s.v));
+  }
+  s.base = Vec(color.x, color.y, color.z);
+  s.alpha = color.w;
+  s.coverage = m.alpha_mode == AlphaMode::blend ? s.alpha : 1;
+  const Imath::V4d rough = texture(s, Slot::metallic_roughness);
+  s.metallic = m.metallic * rough.z;
+  s.roughness = m.roughness * rough.y;
+  s.occlusion = 1 + m.occlusion_strength * (texture(s, Slot::occlusion).x - 1);
+  s.transmission = m.transmission * texture(s, Slot::transmission).x;
+}
+
+ReferenceTracer::Surface ReferenceTracer::surface_at(const Found& found, const Ray& ray) const {
+  Surface s{};
+  s.triangle = found.triangle;
+  s.object = &scene_.objects[found.triangle->object];
+  s.mesh = &mesh_of(found.triangle->object);
+  s.material = &scene_.material(s.object->material);
+  s.optics = surface_optics(*s.material, *s.mesh);
+  s.u = found.u;
+  s.v = found.v;
+  s.p = s.triangle->a * (1 - s.u - s.v) + s.triangle->b * s.u + s.triangle->c * s.v;
+  Vec front = (s.triangle->b - s.triangle->a).cross(s.triangle->c - s.triangle->a).normalized();
+  const Imath::M44d world(s.object->to_world);
+  if (world.determinant() < 0) front = -front;
+  s.inside = front.dot(ray.direction) > 0;
+  s.ng = s.inside ? -front : front;
+  s.view = -ray.direction;
+  s.incidence = std::abs(s.ng.dot(ray.direction));
+  s.width = ray.width + ray.spread * found.t;
+  s.with_level = s.width > 0;
+  s.n = s.ng;
+  if (!s.mesh->normals.empty()) {
+    const auto& [i, j, k] = s.mesh->triangles[s.triangle->primitive];
+    world.inverse().transposed().multDirMatrix(
+        Vec(s.mesh->normals[i]) * (1 - s.u - s.v) + Vec(s.mesh->normals[j]) * s.u + Vec(s.mesh->normals[k]) * s.v, s.n);
+    s.n.normalize();
+    if (s.n.dot(s.ng) < 0) s.n = -s.n;
+  }
+  read_material(s);
+  const Vec coat = bent_normal(s, Slot::clearcoat_normal, s.material->clearcoat_normal_scale);
+  s.n = bent_normal(s, Slot::normal, s.material->normal_scale);
+  s.nc = coat;
+  return s;
+}
+
+}  // namespace relook

@@ -1,0 +1,294 @@
+#include "reference_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "scene/displacement.h"
+
+namespace relook {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kOffset = 1e-5;
+
+double positive(double x) { return std::max(x, 0.0); }
+double largest(Vec c) { return std::max({c.x, c.y, c.z}); }
+double schlick(double cosine) { return std::pow(1 - cosine, 5); }
+Vec color_of(Color c) { return Vec(c.x, c.y, c.z); }
+Imath::V3f single(Vec v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+/// GGX distribution times height-correlated Smith visibility.
+double ggx(double nh, double nl, double nv, double alpha) {
+  const double a2 = alpha * alpha, d = nh * nh * (a2 - 1) + 1;
+  const double smith = nl * std::sqrt(nv * nv * (1 - a2) + a2) + nv * std::sqrt(nl * nl * (1 - a2) + a2);
+  return a2 / (kPi * d * d) * 0.5 / smith;
+}
+
+double charlie(double nh, double nl, double nv, double roughness) {
+  const double alpha = std::pow(std::max(roughness, 0.07), 2), sine = std::sqrt(positive(1 - nh * nh));
+  return (2 + 1 / alpha) * std::pow(sine, 1 / alpha) / (2 * kPi) / (4 * (nl + nv - nl * nv));
+}
+
+/// Unpolarised reflectance at an interface; `eta` = index here / index there.
+double fresnel_exact(double cosine, double eta) {
+  const double sine2 = eta * eta * (1 - cosine * cosine);
+  if (sine2 >= 1) return 1;
+  const double beyond = std::sqrt(1 - sine2);
+  const double s = (eta * cosine - beyond) / (eta * cosine + beyond);
+  const double p = (eta * beyond - cosine) / (eta * beyond + cosine);
+  return (s * s + p * p) / 2;
+}
+
+}  // namespace
+
+double sheen_albedo(double cosine, double roughness) {
+  const int steps = 128;
+  const Vec view(std::sqrt(1 - cosine * cosine), 0, cosine);
+  double sum = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double nl = (i + 0.5) / steps, sine = std::sqrt(1 - nl * nl);
+    for (int j = 0; j < steps; ++j) {
+      const double phi = (j + 0.5) / steps * kPi;
+      const Vec h = (view + Vec(sine * std::cos(phi), sine * std::sin(phi), nl)).normalized();
+      sum += charlie(h.z, nl, cosine, roughness) * nl;
+    }
+  }
+  return sum / (steps * steps) * 2 * kPi;
+}
+
+ReferenceTracer::ReferenceTracer(const Scene& scene, std::uint32_t max_depth) : scene_(scene), max_depth_(max_depth) {
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (!object.alive) continue;
+    if (object.displacement) displaced_[i] = displaced(scene.mesh(object.mesh), *object.displacement);
+    for (const WorldTriangle& triangle : world_triangles(scene, i)) triangles_.push_back(triangle);
+  }
+}
+
+ReferenceTracer::Found ReferenceTracer::nearest(Vec origin, Vec direction) const {
+  Found best;
+  for (const WorldTriangle& triangle : triangles_) {
+    const LineHit hit = intersect(triangle, origin, direction);
+    if (!hit.inside || hit.t <= 0 || (best.triangle && hit.t > best.t)) continue;
+    if (best.triangle && hit.t == best.t) {  // the tie rule: object key, then primitive
+      const std::uint64_t key = scene_.objects[triangle.object].key, old = scene_.objects[best.triangle->object].key;
+      if (key > old || (key == old && triangle.primitive > best.triangle->primitive)) continue;
+    }
+    if (!is_hole(triangle, hit.u, hit.v)) best = {&triangle, hit.t, hit.u, hit.v};
+  }
+  return best;
+}
+
+Vec ReferenceTracer::tint_of(const Found& crossing, Vec direction, double inside_length) const {
+  const Surface s = surface_at(crossing, {Vec(0, 0, 0), direction, 0, 0});
+  const Material& m = *s.material;
+  if (!s.optics.passes_light) return Vec(0, 0, 0);
+  Vec through(0, 0, 0);
+  if (m.model == IlluminationModel::metallic_roughness)
+    through = (s.inside ? Vec(1, 1, 1) : s.base) * s.transmission * (1 - s.metallic);
+  if (m.model == IlluminationModel::blinn_phong)
+    through = s.base * std::min(1.0, double{m.refraction} + m.transparency);
+  if (s.optics.volume && s.inside && std::isfinite(m.attenuation_distance))
+    for (int c = 0; c < 3; ++c)
+      through[c] *= std::pow(double{m.attenuation_color[c]}, inside_length / m.attenuation_distance);
+  return Vec(1, 1, 1) * (1 - s.coverage) + through * s.coverage;
+}
+
+Vec ReferenceTracer::visibility(Vec p, Vec toward, double distance) const {
+  std::vector<Found> crossings;
+  for (const WorldTriangle& triangle : triangles_) {
+    const LineHit hit = intersect(triangle, p, toward);
+    if (hit.inside && hit.t > 0 && hit.t < distance && !is_hole(triangle, hit.u, hit.v))
+      crossings.push_back({&triangle, hit.t, hit.u, hit.v});
+  }
+  std::sort(crossings.begin(), crossings.end(), [](const Found& a, const Found& b) { return a.t < b.t; });
+  Vec light(1, 1, 1);
+  std::map<std::uint32_t, double> entered;  // object -> where the segment last went in
+  for (const Found& crossing : crossings) {
+    const std::uint32_t object = crossing.triangle->object;
+    light *= tint_of(crossing, toward, crossing.t - entered[object]);
+    entered[object] = crossing.t;
+  }
+  return light;
+}
+
+std::vector<ReferenceTracer::Arriving> ReferenceTracer::lamps(const Surface& s) const {
+  std::vector<Arriving> arriving;
+  for (const LightId id : scene_.light_order) {
+    const Light& light = scene_.light(id);
+    Vec toward = -Vec(light.direction), irradiance = color_of(light.color) * double{light.intensity};
+    double distance = 1e9;
+    if (light.kind != LightKind::directional) {
+      const Vec way = Vec(light.position) - s.p;
+      distance = way.length();
+      toward = way / distance;
+      irradiance *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0) / std::max(distance * distance, 1e-8);
+    }
+    if (light.kind == LightKind::spot) {
+      const double outer = std::cos(double{light.outer_cone}), inner = std::cos(double{light.inner_cone});
+      const double t = (Vec(light.direction).dot(-toward) - outer) / std::max(inner - outer, 1e-3);
+      irradiance *= std::pow(std::clamp(t, 0.0, 1.0), 2);
+    }
+    if (s.ng.dot(toward) <= 0) continue;
+    const Vec start = s.p + s.ng * kOffset;
+    arriving.push_back({toward, irradiance * visibility(start, toward, distance)});
+  }
+  return arriving;
+}
+
+Vec ReferenceTracer::environment(Vec direction) const {
+  const Environment& environment = scene_.environment;
+  Vec value = color_of(environment.color) * double{environment.intensity};
+  if (!environment.image) return value;
+  const double turned = std::atan2(direction.x, -direction.z) + environment.rotation;
+  const Uv uv(static_cast<float>(0.5 + turned / (2 * kPi)), static_cast<float>(std::acos(direction.y) / kPi));
+  const Rgba texel = sample(*environment.image, uv, 0, Wrap::repeat, Wrap::clamp, false);
+  return value * Vec(texel.r, texel.g, texel.b);
+}
+
+Vec ReferenceTracer::reflected(const Surface& s, Vec normal) const {
+  const Vec way = normal * (2 * normal.dot(s.view)) - s.view;
+  const double below = way.dot(s.ng);
+  return (below < 0 ? way - s.ng * (2 * below) : way).normalized();
+}
+
+ReferenceTracer::Answer ReferenceTracer::spawn(const Surface& s, const Ray& ray, Vec direction, double fresnel) const {
+  if (ray.generation >= max_depth_ || ray.fresnel * fresnel < 1e-3) return {};
+  const Vec origin = s.p + s.ng * (direction.dot(s.ng) > 0 ? kOffset : -kOffset);
+  return trace({origin, direction, s.width, ray.spread, ray.generation + 1, ray.fresnel * fresnel});
+}
+
+Vec ReferenceTracer::beer(const Surface& s, bool runs_inside, const Answer& answer) const {
+  Vec color = answer.color;
+  if (runs_inside && s.optics.volume && std::isfinite(s.material->attenuation_distance))
+    for (int c = 0; c < 3; ++c)
+      color[c] *=
+          std::pow(double{s.material->attenuation_color[c]}, answer.distance / s.material->attenuation_distance);
+  return color;
+}
+
+namespace {
+/// The refracted direction, unless all light is reflected; `eta` = index here / index there.
+std::optional<Vec> refracted(Vec view, Vec normal, double eta) {
+  const double cosine = normal.dot(view), sine2 = eta * eta * (1 - cosine * cosine);
+  if (sine2 >= 1) return std::nullopt;
+  return (normal * (eta * cosine - std::sqrt(1 - sine2)) - view * eta).normalized();
+}
+double mirror_fade(double roughness) {
+  const double t = positive(1 - roughness / kMirrorThreshold);
+  return t * t * (3 - 2 * t);
+}
+}  // namespace
+
+Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const {
+  const Material& m = *s.material;
+  const double ior = m.ior, nv = std::max(s.n.dot(s.view), 1e-4), dielectric = 1 - s.metallic;
+  const double r0 = std::pow((ior - 1) / (ior + 1), 2), f90 = m.specular * texture(s, Slot::specular).w;
+  const Imath::V4d tint = texture(s, Slot::specular_color);
+  Vec f0 = color_of(m.specular_color) * Vec(tint.x, tint.y, tint.z) * r0;
+  for (int c = 0; c < 3; ++c) f0[c] = std::min(f0[c], 1.0) * f90;
+  const auto fd = [&](double w) { return f0 + (Vec(f90, f90, f90) - f0) * w; };
+  const auto fresnel = [&](double w) {
+    return fd(w) * dielectric + (s.base + (Vec(1, 1, 1) - s.base) * w) * s.metallic;
+  };
+  const double exact = fresnel_exact(nv, s.inside ? ior : 1 / ior);
+  const double weight = s.optics.volume ? std::clamp((exact - r0) / (1 - r0), 0.0, 1.0) : schlick(nv);
+  const double diffuse = dielectric * (1 - s.transmission), fade = mirror_fade(s.roughness);
+  const bool interface_only = s.optics.volume && s.inside;
+  const std::vector<Arriving> lights = interface_only ? std::vector<Arriving>() : lamps(s);
+
+  Vec color(0, 0, 0), coat(0, 0, 0), sheen(0, 0, 0);
+  const Imath::V4d sheen_texel = texture(s, Slot::sheen_color);
+  const Vec sheen_color = color_of(m.sheen_color) * Vec(sheen_texel.x, sheen_texel.y, sheen_texel.z);
+  const double sheen_rough = m.sheen_roughness * texture(s, Slot::sheen_roughness).w;
+  const double coat_weight = m.clearcoat * texture(s, Slot::clearcoat).x;
+  const double coat_rough = m.clearcoat_roughness * texture(s, Slot::clearcoat_roughness).y;
+  const double coat_nv = std::max(s.nc.dot(s.view), 1e-4), coat_fresnel = 0.04 + 0.96 * schlick(coat_nv);
+  for (const auto& [toward, irradiance] : lights) {
+    const Vec h = (s.view + toward).normalized();
+    const double nl = positive(s.n.dot(toward)), vh = positive(s.view.dot(h)), coat_nl = positive(s.nc.dot(toward));
+    if (nl > 0) {
+      const Vec f = fd(schlick(vh));
+      const double spec = ggx(positive(s.n.dot(h)), nl, nv, std::pow(std::max(s.roughness, 0.05), 2));
+      color += (s.base * (diffuse * (1 - largest(f)) / kPi) + fresnel(schlick(vh)) * spec) * irradiance * nl;
+      sheen += sheen_color * irradiance * (charlie(positive(s.n.dot(h)), nl, nv, sheen_rough) * nl);
+    }
+    if (coat_nl > 0 && coat_weight > 0)
+      coat += irradiance * (coat_weight * (0.04 + 0.96 * schlick(vh)) * coat_nl *
+                            ggx(positive(s.nc.dot(h)), coat_nl, coat_nv, std::pow(std::max(coat_rough, 0.05), 2)));
+  }
+  if (!interface_only)
+    color += color_of(scene_.ambient) * s.occlusion *
+             (s.base * (diffuse * (1 - largest(fd(weight)))) + fresnel(weight) * (1 - fade));
+  if (s.optics.reflects) {
+    const Answer answer = spawn(s, ray, reflected(s, s.n), s.optics.dielectric_cut ? exact : 1);
+    color += fresnel(weight) * fade * beer(s, s.inside, answer);
+  }
+  if (s.optics.refracts) {
+    const auto bent = refracted(s.view, s.n, s.inside ? ior : 1 / ior);
+    if (!s.optics.bent || bent) {
+      const Answer answer = spawn(s, ray, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
+      const Vec filter = s.inside ? Vec(1, 1, 1) : s.base;
+      color += filter * (dielectric * s.transmission * (1 - largest(fd(weight)))) * beer(s, !s.inside, answer);
+    }
+  }
+  if (largest(sheen_color) > 0) color = color * (1 - largest(sheen_color) * sheen_albedo(nv, sheen_rough)) + sheen;
+  const Imath::V4d glow = texture(s, Slot::emissive);
+  color += color_of(m.emissive) * Vec(glow.x, glow.y, glow.z) * double{m.emissive_strength};
+  if (s.optics.coat_reflects)
+    coat +=
+        spawn(s, ray, reflected(s, s.nc), coat_fresnel).color * (coat_weight * coat_fresnel * mirror_fade(coat_rough));
+  return color * (1 - coat_weight * coat_fresnel) + coat;
+}
+
+Vec ReferenceTracer::blinn_phong(const Surface& s, const Ray& ray) const {
+  const Material& m = *s.material;
+  Vec color = color_of(scene_.ambient) * color_of(m.phong_ambient) * s.base * s.occlusion;
+  for (const auto& [toward, irradiance] : lamps(s)) {
+    const double nh = positive(s.n.dot((s.view + toward).normalized()));
+    const double lobe = (m.shininess + 8) / (8 * kPi) * std::pow(nh, double{m.shininess});
+    color += (color_of(m.phong_diffuse) * s.base / kPi + color_of(m.phong_specular) * lobe) * irradiance *
+             positive(s.n.dot(toward));
+  }
+  const Imath::V4d glow = texture(s, Slot::emissive);
+  color += color_of(m.emissive) * Vec(glow.x, glow.y, glow.z) * double{m.emissive_strength};
+  if (s.optics.reflects) color += spawn(s, ray, reflected(s, s.n), 1).color * double{m.reflection};
+  if (s.optics.refracts) {
+    const auto bent = refracted(s.view, s.n, s.inside ? double{m.ior} : 1.0 / m.ior);
+    if (bent) color += spawn(s, ray, *bent, 1).color * double{m.refraction};
+  }
+  return color;
+}
+
+ReferenceTracer::Answer ReferenceTracer::trace(const Ray& ray) const {
+  const Found found = nearest(ray.origin, ray.direction);
+  if (!found.triangle) return {environment(ray.direction), 0, 0};
+  const Surface s = surface_at(found, ray);
+  Answer answer{s.base, s.coverage, found.t};
+  if (s.material->model == IlluminationModel::metallic_roughness) answer.color = metallic_roughness(s, ray);
+  if (s.material->model == IlluminationModel::blinn_phong) answer.color = blinn_phong(s, ray);
+  if (!s.optics.transparent) return answer;
+  const Answer behind = spawn(s, ray, ray.direction, 1);
+  if (s.material->model == IlluminationModel::blinn_phong)
+    answer.color += behind.color * double{s.material->transparency};
+  answer.color = answer.color * s.coverage + behind.color * (1 - s.coverage);
+  answer.alpha = s.coverage + (1 - s.coverage) * behind.alpha;
+  return answer;
+}
+
+Frame ReferenceTracer::frame() const {
+  const Camera& camera = scene_.camera;
+  Frame frame{camera.width, camera.height, {}};
+  for (std::uint32_t y = 0; y < camera.height; ++y) {
+    for (std::uint32_t x = 0; x < camera.width; ++x) {
+      const CameraRay ray = camera_ray(camera, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+      const Answer answer = trace({Vec(ray.origin), Vec(ray.direction), ray.width, ray.spread, 1, 1});
+      const Imath::V3f color = single(answer.color);
+      frame.pixels.emplace_back(color.x, color.y, color.z, static_cast<float>(answer.alpha));
+    }
+  }
+  return frame;
+}
+
+}  // namespace relook

@@ -1,0 +1,47 @@
+// Runs a program as a user would, and reads what a replay left behind.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/json.h"
+
+namespace relook {
+
+/// A folder for one test, empty at first and removed with its contents at the end.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::string& name);
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct ProgramResult {
+  int exit_code = -1;  // 128 + signal when it was killed
+  std::string output;  // stdout and stderr
+};
+
+/// Runs `command[0]` (searched for in PATH) without standard input and waits for it.
+[[nodiscard]] ProgramResult run_program(const std::vector<std::string>& command);
+
+/// What a replay is to be run on.
+struct ReplayCase {
+  std::filesystem::path scene, journal;
+  std::string resolution;
+  std::vector<std::string> view;  // further flags of `relook preprocess`
+};
+
+/// Preprocesses and replays with --verify below `folder`; returns report.json. A gtest failure, and an empty object,
+/// when a program fails.
+[[nodiscard]] Json verified_report(const ReplayCase& replay, const ScratchFolder& folder);
+
+/// Checks each step of a report: no pixel differs from the full render, the step's name begins with its class (as in
+/// "color: ..."; not checked for `plain_names`), it changed the image, and a colour step shot no ray.
+void expect_exact_steps(const Json& report, bool plain_names = false);
+
+}  // namespace relook
