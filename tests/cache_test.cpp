@@ -79,8 +79,7 @@ CacheContent small_content(std::uint32_t samples = 1) {
   content.objects = 1;
   content.lights = 1;
   content.frame.resize(kWidth * kHeight);
-  for (std::size_t i = 0; i < content.frame.size(); ++i)
-    content.frame[i] = Rgba(static_cast<float>(i), 0.1F, -0.0F, 1);
+  for (std::size_t i = 0; i < content.frame.size(); ++i) content.frame[i] = Rgba(static_cast<float>(i), 0.1F, -0.0F, 1);
   for (const auto& words : three_paths()) content.paths.intern(words);
   for (std::uint32_t tile = 0; tile < 2; ++tile) {
     const std::uint32_t x0 = tile * 64, columns = tile == 0 ? 64 : kWidth - 64;
@@ -295,7 +294,8 @@ TEST(Cache, indices_out_of_range_are_refused_although_every_hash_fits) {
     return fault_of(folder / "c");
   };
   EXPECT_EQ(fault_after([](CacheContent&) {}), CacheFault::none);
-  EXPECT_EQ(fault_after([](CacheContent& c) { c.document.assets->meshes[0].triangles[0][1] = 3; }), CacheFault::damaged);
+  EXPECT_EQ(fault_after([](CacheContent& c) { c.document.assets->meshes[0].triangles[0][1] = 3; }),
+            CacheFault::damaged);
   EXPECT_EQ(fault_after([](CacheContent& c) { c.document.assets->meshes[0].normals.pop_back(); }), CacheFault::damaged);
   EXPECT_EQ(fault_after([](CacheContent& c) {
               c.document.assets->meshes[0].positions[0].x = std::numeric_limits<float>::quiet_NaN();
@@ -372,9 +372,9 @@ TEST(Cache, two_writers_of_one_output_leave_one_whole_cache) {
 
 TEST(Cache, every_fault_has_its_own_sentence) {
   std::set<std::string_view> sentences;
-  for (const CacheFault fault : {CacheFault::none, CacheFault::missing, CacheFault::not_a_cache, CacheFault::other_version,
-                                 CacheFault::other_scene, CacheFault::other_options, CacheFault::truncated,
-                                 CacheFault::damaged})
+  for (const CacheFault fault :
+       {CacheFault::none, CacheFault::missing, CacheFault::not_a_cache, CacheFault::other_version,
+        CacheFault::other_scene, CacheFault::other_options, CacheFault::truncated, CacheFault::damaged})
     EXPECT_TRUE(sentences.insert(sentence(fault)).second) << sentence(fault);
 }
 

@@ -2,6 +2,7 @@
 // after.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "base/error.h"
@@ -130,13 +131,19 @@ TEST(Counters, LightColorReachesOnlySamplesThatSeeTheLight) {
   EXPECT_GT(step.changed_pixels.size(), 0U);
 }
 
-/// Rays and shadow segments below the topmost nodes of one material in the new trees.
-TreeSize below_material(const TreeNode& node, const Scene& scene, const std::string& material) {
+/// Rays and shadow segments that an optical change of one material leaves to trace: below its nodes, the branches that
+/// are new and, where `bends`, the refracted ones. Everything else goes the way it went.
+TreeSize below_material(const TreeNode& before, const TreeNode& after, const Scene& scene, const std::string& material,
+                        bool bends) {
   TreeSize size;
-  if (node.missed) return size;
-  const bool changed = scene.material(scene.objects[node.object].material).name == material;
-  for (const auto& [branch, child] : node.children)
-    size += changed ? size_of(child) : below_material(child, scene, material);
+  if (after.missed) return size;
+  const bool changed = scene.material(scene.objects[after.object].material).name == material;
+  for (const auto& [branch, child] : after.children) {
+    const auto old = std::find_if(before.children.begin(), before.children.end(),
+                                  [&, kind = branch](const auto& pair) { return pair.first == kind; });
+    const bool goes_as_before = old != before.children.end() && !(changed && bends && branch == Branch::refraction);
+    size += goes_as_before ? below_material(old->second, child, scene, material, bends) : size_of(child);
+  }
   return size;
 }
 
@@ -145,9 +152,10 @@ TEST(Counters, OpticalStepsShootTheRaysBelowTheChangedNodes) {
   struct OpticalEdit {
     const char *material, *pointer;
     Json value;
+    bool bends = false;
   };
   const std::vector<OpticalEdit> edits = {
-      {"Glass", "/materials/Glass/extensions/KHR_materials_ior/ior", 1.8},
+      {"Glass", "/materials/Glass/extensions/KHR_materials_ior/ior", 1.8, true},
       {"Matte", "/materials/Matte/pbrMetallicRoughness/roughnessFactor", 0.1},
       {"Matte", "/materials/Matte/pbrMetallicRoughness/roughnessFactor", 0.8},
       {"Ground", "/materials/Ground/extensions/KHR_materials_clearcoat/clearcoatFactor", 0.5},
@@ -161,7 +169,9 @@ TEST(Counters, OpticalStepsShootTheRaysBelowTheChangedNodes) {
     const Scene& scene = replayer.state().scene();
     EXPECT_EQ(step.classification.change, ChangeClass::optical);
     TreeSize expected;
-    for (const TreeNode& tree : trees_by_pixel(replayer)) expected += below_material(tree, scene, edit.material);
+    const std::vector<TreeNode> after = trees_by_pixel(replayer);
+    for (std::size_t pixel = 0; pixel < after.size(); ++pixel)
+      expected += below_material(before[pixel], after[pixel], scene, edit.material, edit.bends);
     EXPECT_EQ(step.counters.ray_updates, expected.rays);
     EXPECT_EQ(step.counters.shadow_updates, expected.shadows);
     for (const std::uint32_t pixel : step.changed_pixels)

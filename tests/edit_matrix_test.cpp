@@ -48,15 +48,15 @@ std::vector<Row> color_rows() {
       row("proportion of transmission",
           set("/materials/Glass/extensions/KHR_materials_transmission/transmissionFactor", 0.6)),
       row("attenuation", set("/materials/Glass/extensions/KHR_materials_volume/attenuationColor", {0.9, 0.4, 0.4}),
-          set("/materials/Glass/extensions/KHR_materials_volume/attenuationDistance", 0.3)),
+          add("/materials/Glass/extensions/KHR_materials_volume/attenuationDistance", 0.3)),
       row("light color", set("/lights/Lamp/color", {0.6, 1, 0.7})),
       row("light intensity", set("/lights/Lamp/intensity", 33)),
-      row("light range", set("/lights/Lamp/range", 9)),
+      row("light range", add("/lights/Lamp/range", 9)),
       row("the light by its glTF name", set("/extensions/KHR_lights_punctual/lights/Lamp/intensity", 40)),
       row("ambient light", set("/scene/extras/relook/ambient", {0.2, 0.1, 0.1})),
       row("environment color", set("/scene/extras/relook/environment/color", {0.6, 0.2, 0.1})),
       row("environment intensity", set("/scene/extras/relook/environment/intensity", 0.7)),
-      row("environment image", set("/scene/extras/relook/environment/image", "PictureImage")),
+      row("environment image", add("/scene/extras/relook/environment/image", "PictureImage")),
       row("environment rotation", set("/scene/extras/relook/environment/rotation", 1.2)),
       row("texture parameter", set("/textures/Marble/extras/relook/procedural/scale", 3.5)),
       row("texture colors", set("/textures/Marble/extras/relook/procedural/color2", {0.1, 0.4, 0.2})),
@@ -176,6 +176,10 @@ struct MatrixCase {
   ChangeClass kind;
 };
 
+void PrintTo(const MatrixCase& c, std::ostream* out) {
+  *out << test_scene_name(c.scene) << ", " << change_class_name(c.kind) << ", " << c.samples << " samples";
+}
+
 class EditMatrix : public testing::TestWithParam<MatrixCase> {};
 
 std::string case_name(const testing::TestParamInfo<MatrixCase>& info) {
@@ -208,7 +212,8 @@ TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
     EXPECT_EQ(step.counters.pixels_changed, step.changed_pixels.size());
     EXPECT_LE(step.counters.pixels_changed, step.counters.samples_affected);
     EXPECT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments);
-    if (kind == ChangeClass::color) {
+    if (kind == ChangeClass::color &&
+        which != TestScene::study) {  // there Picture displaces and Matte spawns coat rays
       EXPECT_EQ(step.classification.change, ChangeClass::color);
     }
     rows_that_changed += step.changed_pixels.empty() ? 0 : 1;

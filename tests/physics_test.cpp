@@ -362,7 +362,7 @@ TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
 TEST(Physics, SurfaceDoesNotShadowItselfWhereCoordinatesVanish) {
   // A hit at the origin of all coordinates on a triangle of 10 metres: rounding follows the triangle, not the point.
   SceneBuilder scene = sunlit_plane();
-  for (const Point eye : {Point(0, 0.5F, 3), Point(0, 1, 0.1F), Point(2, 0.3F, 1)})
+  for (const Point& eye : {Point(0, 0.5F, 3), Point(0, 1, 0.1F), Point(2, 0.3F, 1)})
     expect_near(seen(scene, eye, Point(0, 0, 0), 1), 1, 1, 1);
 }
 

@@ -202,6 +202,10 @@ struct RandomCase {
   std::size_t threads;
 };
 
+void PrintTo(const RandomCase& c, std::ostream* out) {
+  *out << test_scene_name(c.scene) << ", " << c.samples << " samples, " << c.threads << " threads";
+}
+
 class RandomJournal : public testing::TestWithParam<RandomCase> {
  protected:
   ~RandomJournal() override { set_thread_count(0); }

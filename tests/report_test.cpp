@@ -10,7 +10,8 @@
 namespace relook {
 namespace {
 
-/// The part of JSON Schema that report.schema.json uses. Unknown keywords are failures, so that none is ignored silently.
+/// The part of JSON Schema that report.schema.json uses. Unknown keywords are failures, so that none is ignored
+/// silently.
 class Schema {
  public:
   explicit Schema(Json document) : document_(std::move(document)) {}
@@ -44,8 +45,8 @@ class Schema {
     if (keyword == "minItems") return !value.is_array() || value.size() >= rule.get<std::size_t>();
     if (keyword == "maxItems") return !value.is_array() || value.size() <= rule.get<std::size_t>();
     if (keyword == "required")
-      return !value.is_object() ||
-             std::all_of(rule.begin(), rule.end(), [&](const Json& key) { return value.contains(key.get<std::string>()); });
+      return !value.is_object() || std::all_of(rule.begin(), rule.end(),
+                                               [&](const Json& key) { return value.contains(key.get<std::string>()); });
     return keyword == "title" || keyword == "description" || keyword == "$schema" || keyword == "$defs";
   }
 
@@ -134,11 +135,29 @@ TEST(Report, schema_notices_what_is_missing_or_wrong) {
 
 TEST(Report, has_every_name_of_version_1) {
   const Json step = report_json(small_report())["steps"][1];
-  for (const char* name :
-       {"step", "name", "class", "drag_frame", "frame", "samples_total", "samples_affected", "pixels_changed",
-        "regions_visited", "regions_culled", "ray_tests", "ray_tests_culled", "ray_updates", "shadow_updates",
-        "object_rays", "color_trees_evaluated", "seconds", "resident", "evicted", "rebuilt", "reloaded", "peak_rss",
-        "verify"})
+  for (const char* name : {"step",
+                           "name",
+                           "class",
+                           "drag_frame",
+                           "frame",
+                           "samples_total",
+                           "samples_affected",
+                           "pixels_changed",
+                           "regions_visited",
+                           "regions_culled",
+                           "ray_tests",
+                           "ray_tests_culled",
+                           "ray_updates",
+                           "shadow_updates",
+                           "object_rays",
+                           "color_trees_evaluated",
+                           "seconds",
+                           "resident",
+                           "evicted",
+                           "rebuilt",
+                           "reloaded",
+                           "peak_rss",
+                           "verify"})
     EXPECT_TRUE(step.contains(name)) << name;
   for (const char* name : {"classify", "select", "test", "update", "evaluate", "write", "total"})
     EXPECT_TRUE(step["seconds"].contains(name)) << name;

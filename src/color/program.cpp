@@ -46,20 +46,22 @@ bool is_lookup(Op op) { return op == Op::texture || op == Op::environment_map; }
 class RegisterFile {
  public:
   std::uint16_t take(unsigned count) {
-    for (std::size_t first = 0; count == 1 && first < free_.size(); ++first) {
-      if (!free_[first]) continue;
-      free_[first] = false;
-      return static_cast<std::uint16_t>(first);
+    if (count == 1 && !free_.empty()) {
+      const std::uint16_t last = free_.back();
+      free_.pop_back();
+      return last;
     }
-    const auto first = static_cast<std::uint16_t>(free_.size());
-    free_.resize(free_.size() + count, false);
+    const auto first = static_cast<std::uint16_t>(size_);
+    size_ += count;
+    require(size_ <= 0xFFFF, "a colour program fits its registers");
     return first;
   }
-  void release(std::uint16_t reg) { free_[reg] = true; }
-  [[nodiscard]] std::uint16_t size() const { return static_cast<std::uint16_t>(free_.size()); }
+  void release(std::uint16_t reg) { free_.push_back(reg); }
+  [[nodiscard]] std::uint16_t size() const { return static_cast<std::uint16_t>(size_); }
 
  private:
-  std::vector<bool> free_;
+  unsigned size_ = 0;
+  std::vector<std::uint16_t> free_;
 };
 
 }  // namespace
@@ -90,7 +92,7 @@ Value ExpressionBuilder::field(Field field, unsigned component) {
 
 Value ExpressionBuilder::light(LightId light, LightField field) {
   auto& lights = dependencies_.lights;
-  if (std::ranges::find(lights, light) == lights.end()) lights.push_back(light);
+  if (lights.empty() || lights.back() != light) lights.push_back(light);  // a model takes one lamp after the other
   return emit({Op::light_field, static_cast<std::uint32_t>(field) | light.index() << 8, {}});
 }
 

@@ -67,12 +67,13 @@ struct Replayer::Impl {
   RayScene rays;
   std::vector<LightId> lights;  // light order of the stored paths
   std::uint64_t segments = 0;
+  std::size_t compact_paths;  // size of the path table when it last held no unused paths
   ProgramTable programs;
   std::unique_ptr<Tracer> tracer;  // made when a step first needs rays
   Tracer::TopLevel level;
   bool level_is_current = false;
 
-  Impl(SceneState s, Image i) : state(std::move(s)), image(std::move(i)), rays(state.scene()), lights(state.scene().light_order) {
+  Impl(SceneState s, Image i) : state(std::move(s)), image(std::move(i)), rays(state.scene()), lights(state.scene().light_order), compact_paths(image.paths.size()) {
     segments = count_segments();
   }
 
@@ -238,13 +239,31 @@ struct Replayer::Impl {
   }
 
   void store(const std::vector<TileUpdate>& updates, const StepChange& change, StepResult& result) {
+    // Another light order means another form of every path: all samples have been packed anew.
+    if (change.rays.lights_changed) image.paths = PathTable();
     for (std::size_t tile = 0; tile < updates.size(); ++tile) {
       store_trees(image.trees[tile], updates[tile]);
       store_colors(tile, updates[tile], result.changed_pixels);
     }
     std::ranges::sort(result.changed_pixels);
     lights = state.scene().light_order;
-    if (change.touches_rays()) segments = count_segments();
+    if (!change.touches_rays()) return;
+    if (image.paths.size() > 4 * compact_paths + 4096) drop_unused_paths();
+    segments = count_segments();
+  }
+
+  /// Numbers the paths in use afresh, in the order of tiles and samples.
+  void drop_unused_paths() {
+    PathTable used;
+    std::vector<PathId> ids(image.paths.size(), PathId::none());
+    for (TileTrees& tile : image.trees)
+      for (PathId& path : tile.paths) {
+        PathId& id = ids[path.index()];
+        if (id.is_none()) id = used.intern(image.paths.words(path));
+        path = id;
+      }
+    image.paths = std::move(used);
+    compact_paths = image.paths.size();
   }
 
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {

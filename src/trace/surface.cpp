@@ -43,13 +43,22 @@ Normal unit_normal(Normal n) {
   return unit_or(n / largest, Normal(0, 0, 1));
 }
 
-float offset_of(const Transform& m, const Point& local) {
-  // A bound of the magnitudes that were added up to give the world position; its last bits are what may be wrong.
+/// Largest magnitude that is added up on the way from object space to a world coordinate.
+float magnitude(const Transform& m, const Point& local) {
   float largest = 0;
   for (int axis = 0; axis < 3; ++axis)
     largest = std::max(largest, std::fabs(local.x * m[0][axis]) + std::fabs(local.y * m[1][axis]) +
                                     std::fabs(local.z * m[2][axis]) + std::fabs(m[3][axis]));
-  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place of `largest`
+  return largest;
+}
+
+/// Rounding errors of a hit follow the size of its triangle's coordinates, not of its own: near the origin of a large
+/// triangle they are as large as anywhere else on it.
+float offset_of(const RayObject& object, const std::array<std::uint32_t, 3>& triangle) {
+  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place
+  float largest = 0;
+  for (std::uint32_t vertex : triangle)
+    largest = std::max(largest, magnitude(object.to_world, object.mesh->positions[vertex]));
   return largest * kUlps;
 }
 
@@ -96,7 +105,7 @@ SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction di
   SurfacePoint point;
   point.local = interpolate(mesh.positions, triangle, hit);
   point.position = to_world(object.to_world, point.local);
-  point.offset = offset_of(object.to_world, point.local);
+  point.offset = offset_of(object, triangle);
   const Point& a = mesh.positions[triangle[0]];
   const Normal cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
   Normal front = unit_normal(unit_normal(cross) * object.normal_to_world);

@@ -1,0 +1,237 @@
+// The program as scripts see it: exit codes, one-line messages, files, JSON on stdout.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/json.h"
+#include "run_program.h"
+
+namespace relook {
+namespace {
+
+const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
+
+ProgramResult relook(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
+  return run_program(arguments);
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+Json read_json(const std::filesystem::path& path) {
+  const Bytes bytes = read_file(path);
+  return parse_json(text_of(bytes), path.string());
+}
+
+/// Exactly one line, which starts with "relook: " and contains `part`.
+void expect_error(const ProgramResult& result, int exit_code, const std::string& part) {
+  EXPECT_EQ(result.exit_code, exit_code) << result.output;
+  EXPECT_TRUE(result.output.starts_with("relook: ")) << result.output;
+  EXPECT_NE(result.output.find(part), std::string::npos) << result.output;
+  EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1) << result.output;
+}
+
+const char* const kJournal = R"({"relook": "journal/1", "steps": [
+  {"name": "green", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
+                              "value": [0.1, 0.9, 0.1, 1]}]},
+  {"name": "slide", "select": ["/nodes/CentralSphere"], "drag": [
+    [{"op": "replace", "path": "/nodes/CentralSphere/translation", "value": [0.1, 1, 0]}],
+    [{"op": "replace", "path": "/nodes/CentralSphere/translation", "value": [0.2, 1, 0]}]]}]})";
+
+class Cli : public testing::Test {
+ protected:
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  ProgramResult preprocess(const std::string& output) const {
+    return relook({"preprocess", kScene, "-o", at(output), "--resolution", "72x40", "--quiet"});
+  }
+  ScratchFolder folder_{"cli"};
+};
+
+TEST_F(Cli, usage_errors_are_one_line_and_exit_1) {
+  expect_error(relook({}), 1, "a verb is required");
+  expect_error(relook({"plan"}), 1, "no verb \"plan\"");
+  expect_error(relook({"rendr", kScene}), 1, "did you mean \"render\"?");
+  expect_error(relook({"render"}), 1, "SCENE");
+  expect_error(relook({"render", kScene}), 1, "--output");
+  expect_error(relook({"replay", at("c"), "-o", at("r")}), 1, "JOURNAL");
+  const auto render_with = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", kScene, "-o", at("x.exr")});
+    return relook(flags);
+  };
+  expect_error(render_with({"--resolution", "12"}), 1, "--resolution: \"12\"");
+  expect_error(render_with({"--resolution", "0x5"}), 1, "--resolution: \"0x5\"");
+  expect_error(render_with({"--resolution", "16385x5"}), 1, "--resolution");
+  expect_error(render_with({"--samples", "0"}), 1, "--samples");
+  expect_error(render_with({"--samples", "257"}), 1, "--samples");
+  expect_error(render_with({"--max-depth", "17"}), 1, "--max-depth");
+  expect_error(render_with({"--threads", "1025"}), 1, "--threads");
+  expect_error(render_with({"--threads", "-1"}), 1, "--threads");
+  expect_error(render_with({"--lights", "manual"}), 1, "--lights");
+  expect_error(render_with({"--progress", "fancy"}), 1, "--progress");
+  expect_error(render_with({"--bogus"}), 1, "--bogus");
+  expect_error(render_with({"--step", "2"}), 1, "--journal");
+  expect_error(relook({"preprocess", kScene, "-o", at("c"), "--memory", "2X"}), 1, "--memory: \"2X\"");
+  expect_error(relook({"preprocess", kScene, "-o", at("c"), "--ray-trees", "101"}), 1, "--ray-trees");
+  expect_error(relook({"replay", at("c"), at("j"), "-o", at("r"), "--verify=0"}), 1, "--verify");
+  EXPECT_FALSE(std::filesystem::exists(at("x.exr")));
+}
+
+TEST_F(Cli, help_and_version_go_to_stdout_and_exit_0) {
+  EXPECT_EQ(relook({"--help"}).exit_code, 0);
+  EXPECT_EQ(relook({"replay", "--help"}).exit_code, 0);
+  EXPECT_TRUE(relook({"--version"}).output.starts_with("relook 0."));
+}
+
+TEST_F(Cli, bad_inputs_exit_2) {
+  expect_error(relook({"render", at("none.gltf"), "-o", at("x.exr")}), 2, "none.gltf: ");
+  expect_error(relook({"render", kScene, "-o", at("x.exr"), "--camera", "Nope"}), 2, "no camera \"Nope\"");
+  write_text(at("bad.json"), R"({"relook": "journal/1", "steps": [{"name": "x", "edit": [], "drags": []}]})");
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  expect_error(relook({"replay", at("c"), at("bad.json"), "-o", at("run")}), 2, "/steps/0");
+  EXPECT_FALSE(std::filesystem::exists(at("run"))) << "a rejected journal writes nothing";
+  expect_error(relook({"compare", at("c"), kScene}), 2, "not a run");
+  expect_error(relook({"inspect", at("nothing.glb")}), 2, "no such file");
+}
+
+TEST_F(Cli, a_scene_without_camera_or_light_names_the_flag) {
+  const std::string geometry = R"("nodes":[{"name":"N"}],"scenes":[{"nodes":[0]}])";
+  write_text(at("bare.gltf"), R"({"asset":{"version":"2.0"},)" + geometry + "}");
+  expect_error(relook({"render", at("bare.gltf"), "-o", at("x.exr")}), 2, "--camera auto");
+  expect_error(relook({"render", at("bare.gltf"), "-o", at("x.exr"), "--camera", "0,0,5:0,0,0:40"}), 2, "--lights auto");
+}
+
+TEST_F(Cli, replay_writes_frames_previews_and_a_report) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  const ProgramResult result =
+      relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--verify", "--json", "--progress", "none"});
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const Json summary = parse_json(result.output, "stdout");
+  EXPECT_EQ(summary["pixels_different"], 0);
+  for (const char* name : {"0000", "0001", "0002_01", "0002_02", "0002"}) {
+    EXPECT_TRUE(std::filesystem::exists(at("run/frames/" + std::string(name) + ".exr"))) << name;
+    EXPECT_TRUE(std::filesystem::exists(at("run/previews/" + std::string(name) + ".png"))) << name;
+  }
+  const Json report = read_json(at("run/report.json"));
+  ASSERT_EQ(report["steps"].size(), 5U);
+  EXPECT_EQ(report["steps"][1]["class"], "color");
+  EXPECT_EQ(report["steps"][1]["ray_updates"], 0);
+  EXPECT_EQ(report["steps"][3]["drag_frame"], 2);
+  EXPECT_EQ(report["steps"][4]["class"], "geometric");
+  EXPECT_EQ(report["steps"][4]["verify"]["pixels_compared"], 72 * 40);
+  EXPECT_GT(report["full_render_seconds"], 0);
+  EXPECT_EQ(report["interrupted"], false);
+}
+
+TEST_F(Cli, a_replayed_frame_equals_the_rendered_one) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--float", "--quiet"}).exit_code, 0);
+  for (const auto& [step, frame] : {std::pair{"0", "0000"}, {"1", "0001"}, {"2", "0002"}}) {
+    ASSERT_EQ(relook({"render", kScene, "-o", at("full.exr"), "--journal", at("j.json"), "--step", step, "--float",
+                      "--resolution", "72x40", "--quiet"})
+                  .exit_code,
+              0);
+    const ProgramResult compared =
+        relook({"compare", at("run/frames/" + std::string(frame) + ".exr"), at("full.exr")});
+    EXPECT_EQ(compared.exit_code, 0) << compared.output;
+  }
+}
+
+TEST_F(Cli, frames_are_the_same_bytes_in_every_run_and_for_any_thread_count) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("one"), "--quiet", "--threads", "1"}).exit_code, 0);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("two"), "--quiet", "--threads", "2"}).exit_code, 0);
+  EXPECT_EQ(read_json(at("one/report.json"))["frames"], read_json(at("two/report.json"))["frames"]);
+  EXPECT_EQ(relook({"compare", at("one"), at("two"), "--quiet"}).exit_code, 0);
+}
+
+TEST_F(Cli, several_journals_get_a_folder_each_and_start_from_the_cache) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("first.json"), kJournal);
+  write_text(at("second.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("first.json"), at("second.json"), "-o", at("runs"), "--quiet"}).exit_code, 0);
+  const Json first = read_json(at("runs/first/report.json")), second = read_json(at("runs/second/report.json"));
+  EXPECT_EQ(first["frames"], second["frames"]);
+  expect_error(relook({"replay", at("c"), at("first.json"), at("first.json"), "-o", at("twice")}), 1, "\"first\"");
+}
+
+TEST_F(Cli, compare_finds_differences_and_exits_10) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
+  const ProgramResult result = relook({"compare", at("run/frames/0000.exr"), at("run/frames/0001.exr"), "-o",
+                                       at("difference"), "--progress", "none"});
+  EXPECT_EQ(result.exit_code, 10);
+  EXPECT_GT(read_json(at("difference/compare.json"))["total"]["pixels_different"], 0);
+  std::filesystem::copy(at("run"), at("copy"), std::filesystem::copy_options::recursive);
+  std::filesystem::remove(at("copy/frames/0002.exr"));
+  EXPECT_EQ(relook({"compare", at("run"), at("copy"), "--quiet"}).exit_code, 10);
+}
+
+TEST_F(Cli, inspect_knows_scene_cache_journal_and_run) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
+  EXPECT_EQ(parse_json(relook({"inspect", kScene, "--json"}).output, "")["lights"], 1);
+  EXPECT_EQ(parse_json(relook({"inspect", at("c"), "--json"}).output, "")["relook"], "cache/1");
+  EXPECT_EQ(parse_json(relook({"inspect", at("run"), "--json"}).output, "")["relook"], "report/1");
+  const Json steps = parse_json(relook({"inspect", at("j.json"), "--scene", kScene, "--json"}).output, "")["steps"];
+  ASSERT_EQ(steps.size(), 3U);
+  EXPECT_EQ(steps[0]["class"], "color");
+  EXPECT_EQ(steps[2]["class"], "geometric");
+  EXPECT_FALSE(steps[0]["reasons"].empty());
+  EXPECT_TRUE(parse_json(relook({"inspect", kScene, "--look"}).output, "").contains("materials"));
+  EXPECT_TRUE(parse_json(relook({"inspect", at("c"), "--look"}).output, "").contains("materials"));
+}
+
+TEST_F(Cli, structure_options_are_recorded_and_change_no_frame) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("plain"), "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("tight"), "--quiet", "--memory", "1.5M", "--ray-trees",
+                    "10%", "--tunnels", "0", "--groups", "0", "--shadow-bits", "2", "--atoms", "1"})
+                .exit_code,
+            0);
+  const Json plain = read_json(at("plain/report.json")), tight = read_json(at("tight/report.json"));
+  EXPECT_EQ(plain["frames"], tight["frames"]);
+  EXPECT_EQ(tight["options"]["memory"], 1572864);
+  EXPECT_EQ(tight["options"]["ray_trees"], 10);
+  EXPECT_EQ(tight["options"]["groups"], 0);
+}
+
+TEST_F(Cli, a_cache_that_does_not_fit_is_refused_with_its_own_code_and_sentence) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  const auto replay = [&](std::vector<std::string> flags = {}) {
+    flags.insert(flags.begin(), {"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"});
+    return relook(flags);
+  };
+  EXPECT_EQ(replay({"--scene", kScene}).exit_code, 0);
+  expect_error(replay({"--scene", kScene, "--lights", "auto"}), 3, "another scene");
+  expect_error(relook({"replay", at("none"), at("j.json"), "-o", at("run")}), 2, "there is no cache here");
+  const std::filesystem::path look = at("c/look.json");
+  const auto size = std::filesystem::file_size(look);
+  std::filesystem::resize_file(look, size - 1);
+  expect_error(replay(), 5, "cut short");
+  expect_error(relook({"check", at("c"), "--quiet"}), 5, "cut short");
+  std::filesystem::resize_file(look, size);
+  expect_error(replay(), 5, "damaged");
+}
+
+TEST_F(Cli, folders_of_the_user_are_not_overwritten) {
+  std::filesystem::create_directory(at("mine"));
+  write_text(at("mine/thesis.txt"), "x");
+  expect_error(preprocess("mine"), 2, "not overwritten");
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  expect_error(relook({"replay", at("c"), at("j.json"), "-o", at("mine")}), 2, "not overwritten");
+  EXPECT_TRUE(std::filesystem::exists(at("mine/thesis.txt")));
+}
+
+}  // namespace
+}  // namespace relook
