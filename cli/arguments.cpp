@@ -141,7 +141,7 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
     arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
   arguments.view.auto_lights = !raw.lights.empty();
-  arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "progress style"));
+  arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
 }
 
 /// `inspect --look SCENE`: the word after --look is the input when there is no other.

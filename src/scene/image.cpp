@@ -29,6 +29,13 @@ std::string format_name(BytesView encoded) {
   return "";
 }
 
+/// More pixels than this cannot be in one byte of a format: deflate shrinks 1032 to 1 at most, and a PNG byte may hold
+/// eight pixels; Radiance runs hold 127 of a channel in two bytes; a JPEG needs a bit for each block of 64.
+std::uint64_t most_pixels_per_byte(std::string_view format) {
+  if (format == "png") return 8256;
+  return format == "hdr" ? 64 : 1032;
+}
+
 /// An image opened in memory, its header checked.
 class OpenImage {
  public:
@@ -43,7 +50,7 @@ class OpenImage {
     options.attribute("oiio:UnassociatedAlpha", 1);
     input_->set_ioproxy(&*memory_);
     if (!input_->open("memory." + format, spec_, options)) fail(input_->geterror());
-    check_header();
+    check_header(stream.size() * most_pixels_per_byte(format));
   }
   ~OpenImage() {
     if (input_) input_->close();
@@ -99,7 +106,7 @@ class OpenImage {
     reduced_ = std::move(stream.bytes);
     return reduced_;
   }
-  void check_header() const {
+  void check_header(std::uint64_t most_encoded_pixels) const {
     if (spec_.width < 1 || spec_.height < 1 || spec_.depth > 1 || spec_.nchannels < 1)
       fail("it has no pixels, or is no plain image");
     const std::uint64_t count = std::uint64_t{static_cast<std::uint32_t>(spec_.width)} *
@@ -107,6 +114,8 @@ class OpenImage {
     const std::uint64_t texel_bytes = spec_.format == OIIO::TypeDesc::UINT8 ? 4 : 16;
     if (count > kMostImagePixels || count * texel_bytes > kMostDecodedBytes)
       fail(std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels are too many");
+    if (count > most_encoded_pixels)
+      fail("the file is too short for " + std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels");
   }
 
   std::string_view file_, where_;
