@@ -77,7 +77,9 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_inputs(render, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
   add_output(render, arguments, "OpenEXR frame to write")->required();
   render.add_option("--journal", arguments.journal, "Edit the scene by this journal first");
-  render.add_option("--step", arguments.step, "Last step to apply; all")->check(CLI::Range(0, 1000000))->needs("--journal");
+  render.add_option("--step", arguments.step, "Last step to apply; all")
+      ->check(CLI::Range(0, 1000000))
+      ->needs("--journal");
   add_view(render, arguments, raw);
   add_look_patch(render, arguments);
   add_float(render, arguments);
@@ -136,7 +138,8 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.resolution.empty())
     std::tie(arguments.view.width, arguments.view.height) = parse_resolution("--resolution", raw.resolution);
   if (!raw.memory.empty()) arguments.structures.memory_bytes = parse_size("--memory", raw.memory);
-  if (!raw.ray_trees.empty()) arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);
+  if (!raw.ray_trees.empty())
+    arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);
   if (!raw.color_trees.empty())
     arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);

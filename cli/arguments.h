@@ -15,30 +15,30 @@ enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, c
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, none };
 
 struct ViewArguments {
-  std::string camera;     // NAME | auto | EYE:TARGET:FOV; "": the scene's own
+  std::string camera;  // NAME | auto | EYE:TARGET:FOV; "": the scene's own
   bool auto_lights = false;
-  std::string look_patch; // RFC 6902 file, or ""
+  std::string look_patch;  // RFC 6902 file, or ""
   std::uint32_t width = 960, height = 540;
   ViewOptions sampling;
 };
 
 struct Arguments {
   Verb verb = Verb::render;
-  std::vector<std::string> inputs;     // positional, in order
+  std::vector<std::string> inputs;  // positional, in order
   std::string output;
   ViewArguments view;
   StructureOptions structures;
-  std::size_t threads = 0;             // 0: all
+  std::size_t threads = 0;  // 0: all
   bool quiet = false, json = false;
   ProgressStyle progress = ProgressStyle::automatic;
 
-  std::string journal;                 // render
-  std::optional<std::uint32_t> step;   // render
-  bool float_frames = false;           // render, replay
+  std::string journal;                // render
+  std::optional<std::uint32_t> step;  // render
+  bool float_frames = false;          // render, replay
   std::optional<double> verify_percent;
-  bool baseline = false;               // replay
-  bool print_look = false;             // inspect
-  std::string scene;                   // inspect, replay, check
+  bool baseline = false;    // replay
+  bool print_look = false;  // inspect
+  std::string scene;        // inspect, replay, check
 };
 
 /// The arguments, or what to print instead (--help, --version). Throws UsageError.

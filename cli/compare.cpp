@@ -1,6 +1,8 @@
 #include "engine/compare.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -51,10 +53,16 @@ Comparison compare_runs(const std::filesystem::path& a, const std::filesystem::p
   return comparison;
 }
 
+std::string short_number(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.4g", value);
+  return digits;
+}
+
 std::string text(const std::string& name, const FrameDifference& difference) {
   return name + ": " + std::to_string(difference.pixels_different) + " of " +
          std::to_string(difference.pixels_compared) + " pixels differ, max error " +
-         std::to_string(difference.max_error) + ", RMS error " + std::to_string(difference.rms_error);
+         short_number(difference.max_error) + ", RMS error " + short_number(difference.rms_error);
 }
 
 Json comparison_json(const Arguments& arguments, const Comparison& comparison) {

@@ -15,14 +15,18 @@ void print(std::FILE* stream, std::string_view text) { std::fwrite(text.data(), 
 std::string bar(int percent) {
   constexpr int kCells = 30;
   const auto filled = static_cast<std::size_t>(percent * kCells / 100);
-  return "[" + std::string(filled, '#') + std::string(kCells - filled, '.') + "]";
+  std::string cells(kCells, '.');
+  std::fill_n(cells.begin(), filled, '#');
+  return std::string("[").append(cells).append("]");
 }
 
 }  // namespace
 
 Console::Console(const Arguments& arguments, const Interrupt& interrupt)
-    : interrupt_(interrupt), style_(arguments.quiet ? ProgressStyle::none : arguments.progress),
-      quiet_(arguments.quiet), json_(arguments.json) {
+    : interrupt_(interrupt),
+      style_(arguments.quiet ? ProgressStyle::none : arguments.progress),
+      quiet_(arguments.quiet),
+      json_(arguments.json) {
   is_bar_ = style_ == ProgressStyle::automatic && isatty(STDERR_FILENO) != 0;
   if (style_ == ProgressStyle::automatic && !is_bar_) style_ = ProgressStyle::plain;
 }
@@ -52,7 +56,7 @@ void Console::show(const std::string& stage, double done) {
   const std::string share = std::to_string(percent);
   if (is_bar_) {
     bar_is_open_ = true;
-    print(stderr, "\r" + bar(percent) + " " + share + " % " + stage + "\x1b[K");
+    print(stderr, std::string("\r").append(bar(percent)).append(" " + share + " % " + stage + "\x1b[K"));
   } else if (style_ == ProgressStyle::json) {
     print(stderr, Json{{"stage", stage}, {"percent", percent}}.dump() + "\n");
   } else {

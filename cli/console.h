@@ -19,8 +19,8 @@ class Console {
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
 
-  /// Progress of one stage ("tracing"). The function returned also throws Interrupted once a signal has come, and must not
-  /// outlive the console.
+  /// Progress of one stage ("tracing"). The function returned also throws Interrupted once a signal has come, and must
+  /// not outlive the console.
   [[nodiscard]] Progress stage(std::string name);
   /// Ends the line of a progress bar.
   void end_stage();

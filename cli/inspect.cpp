@@ -39,8 +39,11 @@ void inspect_scene(const Arguments& arguments, Console& console) {
   for (const Mesh& mesh : document.assets->meshes) triangles += mesh.triangles.size();
   Json cameras = Json::array();
   for (const auto& [name, camera] : document.cameras.items()) cameras.push_back(name);
-  Json summary{{"scene", arguments.inputs[0]}, {"scene_hash", loaded.hash}, {"triangles", triangles},
-               {"cameras", cameras},           {"warnings", Json::array()}};
+  Json summary{{"scene", arguments.inputs[0]},
+               {"scene_hash", loaded.hash},
+               {"triangles", triangles},
+               {"cameras", cameras},
+               {"warnings", Json::array()}};
   for (const std::string& warning : loaded.warnings) summary["warnings"].push_back(printable(warning));
   std::string line = arguments.inputs[0] + ": " + std::to_string(triangles) + " triangles";
   for (std::size_t s = 0; s < kSectionCount; ++s) {
@@ -95,11 +98,12 @@ void inspect_run(const Arguments& arguments, Console& console) {
 /// The look document itself goes to stdout, whatever --json says; --quiet is for other verbs.
 void print_look(const Arguments& arguments, Kind kind) {
   const std::string& input = arguments.inputs[0];
-  if (kind != Kind::scene && kind != Kind::cache) throw UsageError("--look: " + input + " is neither a scene nor a cache");
+  if (kind != Kind::scene && kind != Kind::cache)
+    throw UsageError("--look: " + input + " is neither a scene nor a cache");
   if (kind == Kind::cache && !arguments.view.look_patch.empty())
     throw UsageError("--look: the look document of a cache is fixed; patch the scene");
-  const Json look = kind == Kind::scene ? load_document(input, arguments.view).document.look
-                                        : load_cache(input).document.look;
+  const Json look =
+      kind == Kind::scene ? load_document(input, arguments.view).document.look : load_cache(input).document.look;
   std::puts(look.dump(2).c_str());
 }
 
@@ -107,16 +111,25 @@ void print_look(const Arguments& arguments, Kind kind) {
 
 ExitCode run_inspect(const Arguments& arguments, Console& console) {
   const Kind kind = kind_of(arguments.inputs[0]);
-  if (!arguments.scene.empty() && kind != Kind::journal) throw UsageError("--scene: " + arguments.inputs[0] + " is no journal");
+  if (!arguments.scene.empty() && kind != Kind::journal)
+    throw UsageError("--scene: " + arguments.inputs[0] + " is no journal");
   if (arguments.print_look) {
     print_look(arguments, kind);
     return ExitCode::ok;
   }
   switch (kind) {
-    case Kind::scene: inspect_scene(arguments, console); break;
-    case Kind::cache: inspect_cache(arguments, console); break;
-    case Kind::journal: inspect_journal(arguments, console); break;
-    case Kind::run: inspect_run(arguments, console); break;
+    case Kind::scene:
+      inspect_scene(arguments, console);
+      break;
+    case Kind::cache:
+      inspect_cache(arguments, console);
+      break;
+    case Kind::journal:
+      inspect_journal(arguments, console);
+      break;
+    case Kind::run:
+      inspect_run(arguments, console);
+      break;
   }
   return ExitCode::ok;
 }

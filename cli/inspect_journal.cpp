@@ -12,8 +12,8 @@
 namespace relook {
 namespace {
 
-/// The state a journal is tried on. Edits of the active camera are refused when there is one: that of a cache, of --camera,
-/// or the only one of the scene.
+/// The state a journal is tried on. Edits of the active camera are refused when there is one: that of a cache, of
+/// --camera, or the only one of the scene.
 SceneState open_state(const Arguments& arguments) {
   std::error_code error;
   if (std::filesystem::is_directory(arguments.scene, error)) {

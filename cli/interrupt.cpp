@@ -24,6 +24,7 @@ sigset_t watched_signals() {
 Interrupt::Interrupt() {
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  signal(SIGPIPE, SIG_IGN);  // a closed stdout is a failed write, reported at the end, and leaves no temporary files
   waiter_ = std::thread([this] { wait_for_signals(); });
 }
 

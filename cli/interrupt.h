@@ -1,5 +1,5 @@
-// SIGTERM, SIGINT and SIGHUP as a question that long work asks now and then: a thread of its own waits for them, so that
-// no code runs in a signal handler and no state is global.
+// SIGTERM, SIGINT and SIGHUP as a question that long work asks now and then: a thread of its own waits for them, so
+// that no code runs in a signal handler and no state is global.
 #pragma once
 #include <atomic>
 #include <thread>

@@ -4,14 +4,18 @@ namespace relook {
 
 ExitCode exit_code(CacheFault fault) {
   switch (fault) {
-    case CacheFault::none: return ExitCode::ok;
+    case CacheFault::none:
+      return ExitCode::ok;
     case CacheFault::missing:
-    case CacheFault::not_a_cache: return ExitCode::bad_input;
+    case CacheFault::not_a_cache:
+      return ExitCode::bad_input;
     case CacheFault::other_version:
     case CacheFault::other_scene:
-    case CacheFault::other_options: return ExitCode::cache_mismatch;
+    case CacheFault::other_options:
+      return ExitCode::cache_mismatch;
     case CacheFault::truncated:
-    case CacheFault::damaged: return ExitCode::damaged_cache;
+    case CacheFault::damaged:
+      return ExitCode::damaged_cache;
   }
   return ExitCode::damaged_cache;
 }

@@ -12,12 +12,18 @@ constexpr int kSignalExitBase = 128;  // the shell's convention for "ended by a 
 
 ExitCode run_verb(const Arguments& arguments, Console& console) {
   switch (arguments.verb) {
-    case Verb::render: return run_render(arguments, console);
-    case Verb::preprocess: return run_preprocess(arguments, console);
-    case Verb::replay: return run_replay(arguments, console);
-    case Verb::compare: return run_compare(arguments, console);
-    case Verb::inspect: return run_inspect(arguments, console);
-    case Verb::check: return run_check(arguments, console);
+    case Verb::render:
+      return run_render(arguments, console);
+    case Verb::preprocess:
+      return run_preprocess(arguments, console);
+    case Verb::replay:
+      return run_replay(arguments, console);
+    case Verb::compare:
+      return run_compare(arguments, console);
+    case Verb::inspect:
+      return run_inspect(arguments, console);
+    case Verb::check:
+      return run_check(arguments, console);
   }
   return ExitCode::usage;
 }

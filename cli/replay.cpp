@@ -61,7 +61,9 @@ class JournalRun {
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
                        std::string scene_hash, CacheSizes cache, const std::filesystem::path& folder)
-    : arguments_(arguments), console_(console), journal_(journal),
+    : arguments_(arguments),
+      console_(console),
+      journal_(journal),
       replayer_(std::move(*restored.state), std::move(restored.image)),
       folder_(folder, replayer_.image().frame.width, replayer_.image().frame.height,
               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half) {
@@ -174,8 +176,7 @@ Frame JournalRun::full_render() {
 }
 
 void JournalRun::verify(StepReport& entry) {
-  const FrameDifference difference =
-      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent);
+  const FrameDifference difference = compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent);
   entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
   pixels_different_ += difference.pixels_different;
 }

@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "engine/preview.h"
 
 namespace relook {
 namespace {
@@ -33,7 +32,7 @@ void RunFolder::refuse_foreign(const std::filesystem::path& path) {
 }
 
 RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format)
-    : path_(std::move(path)), encoder_(width, height, format) {
+    : path_(std::move(path)), encoder_(width, height, format), preview_encoder_(width, height) {
   make_folders(path_);
   remove_entry(path_ / "report.json");
   for (const std::string_view entry : kRunEntries) remove_entry(path_ / entry);
@@ -45,11 +44,14 @@ void RunFolder::write_step(StepReport& step, const Frame& frame, std::span<const
                            FrameMeta meta) {
   const auto start = std::chrono::steady_clock::now();
   const bool is_first = preview_.empty();
-  if (is_first)
+  if (is_first) {
     encoder_.update(frame);
-  else
+    preview_encoder_.update(frame);
+  } else {
     encoder_.update(frame, changed_pixels);
-  if (is_first || !changed_pixels.empty()) preview_ = encode_png(frame);
+    preview_encoder_.update(frame, changed_pixels);
+  }
+  if (is_first || !changed_pixels.empty()) preview_ = preview_encoder_.png();
   meta.step = step_label(step.step, step.drag_frame);
   meta.change_class = change_class_name(step.change);
   const Bytes bytes = encoder_.exr(meta);

@@ -1,5 +1,5 @@
-// The folder of one run: frames, previews and, last, the report. Files appear whole or not at all; those of an earlier run
-// are removed first.
+// The folder of one run: frames, previews and, last, the report. Files appear whole or not at all; those of an earlier
+// run are removed first.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -7,6 +7,7 @@
 
 #include "base/json.h"
 #include "engine/frame_file.h"
+#include "engine/preview.h"
 #include "engine/report.h"
 
 namespace relook {
@@ -27,6 +28,7 @@ class RunFolder {
  private:
   std::filesystem::path path_;
   FrameEncoder encoder_;
+  PreviewEncoder preview_encoder_;
   Bytes preview_;  // of the last frame; empty before the first
 };
 

@@ -29,7 +29,8 @@ std::uint64_t parse_size(std::string_view option, std::string_view text) {
   std::string_view number = text;
   if (number.ends_with('B')) number.remove_suffix(1);
   double unit = 1;
-  for (const auto& [letter, bytes] : {std::pair{'K', 1024.0}, {'M', 1048576.0}, {'G', 1073741824.0}, {'T', 1099511627776.0}}) {
+  for (const auto& [letter, bytes] :
+       {std::pair{'K', 1024.0}, {'M', 1048576.0}, {'G', 1073741824.0}, {'T', 1099511627776.0}}) {
     if (!number.ends_with(letter)) continue;
     number.remove_suffix(1);
     unit = bytes;
@@ -58,7 +59,8 @@ double parse_percent(std::string_view option, std::string_view text, bool zero_a
   if (number.ends_with('%')) number.remove_suffix(1);
   const std::optional<double> value = whole_number<double>(number);
   const bool is_fitting = value && (*value > 0 || (zero_allowed && *value == 0)) && *value <= 100;
-  if (!is_fitting) refuse(option, text, zero_allowed ? "a percentage from 0 to 100" : "a percentage above 0, up to 100");
+  if (!is_fitting)
+    refuse(option, text, zero_allowed ? "a percentage from 0 to 100" : "a percentage above 0, up to 100");
   return *value;
 }
 

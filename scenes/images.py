@@ -77,10 +77,10 @@ def write_sky(path, width=64, height=32):
         for column in range(width):
             azimuth = 2 * math.pi * (column + 0.5) / width
             up = math.sin(elevation)
-            glow = math.exp(-8 * ((azimuth - 2.0) ** 2 + (elevation - 0.25) ** 2))
+            glow = math.exp(-20 * ((azimuth - 2.0) ** 2 + (elevation - 0.25) ** 2))
             sky = ((0.35, 0.22, 0.30), (0.10, 0.16, 0.42)) if up > 0 else ((0.10, 0.08, 0.07), (0.05, 0.04, 0.04))
             t = abs(up) ** 0.5
-            color = [a * (1 - t) + b * t + g * glow for a, b, g in zip(sky[0], sky[1], (12.0, 6.0, 2.0))]
+            color = [a * (1 - t) + b * t + g * glow for a, b, g in zip(sky[0], sky[1], (6.0, 3.2, 1.2))]
             fraction, exponent = math.frexp(max(color))
             data += bytes([min(int(c * fraction * 256 / max(color)), 255) for c in color] + [exponent + 128])
     os.makedirs(os.path.dirname(path), exist_ok=True)

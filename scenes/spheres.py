@@ -19,7 +19,7 @@ def _textures(gltf, folder):
                 for source, name in enumerate(("Stone", "Planks", "Dents"))}
     procedurals = {"Marble": {"kind": "marble", "scale": 3.0, "turbulence": 1.5, "octaves": 5,
                               "color1": [0.25, 0.28, 0.33], "color2": [0.92, 0.90, 0.86]},
-                   "Bumps": {"kind": "noise", "scale": 5.0, "turbulence": 1.0, "octaves": 3,
+                   "Bumps": {"kind": "noise", "scale": 3.0, "turbulence": 1.0, "octaves": 3,
                              "color1": [0.0, 0.0, 0.0], "color2": [1.0, 1.0, 1.0]}}
     for name, procedural in procedurals.items():
         textures[name] = gltf.add("textures", {"name": name, "extras": {"relook": {"procedural": procedural}}})

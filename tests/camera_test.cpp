@@ -79,8 +79,8 @@ TEST(Camera, auto_sees_every_corner_of_the_scene_and_fills_the_frame) {
         const auto [x, y] = projected(camera, position * object.to_world);
         EXPECT_TRUE(x >= 0 && x <= static_cast<float>(width) && y >= 0 && y <= static_cast<float>(height))
             << object.node << " at " << x << ", " << y;
-        reach = std::max({reach, std::abs(x / static_cast<float>(width) - 0.5F),
-                          std::abs(y / static_cast<float>(height) - 0.5F)});
+        reach = std::max(
+            {reach, std::abs(x / static_cast<float>(width) - 0.5F), std::abs(y / static_cast<float>(height) - 0.5F)});
       }
     EXPECT_GT(reach, 0.3F);
   }
@@ -99,8 +99,9 @@ TEST(CameraRay, the_middle_looks_forward_and_the_corners_span_the_angle) {
 
 TEST(CameraRay, orthographic_rays_are_parallel) {
   ImportedGltf imported = small_gltf();
-  imported.gltf["cameras"][0] = {
-      {"name", "Lens"}, {"type", "orthographic"}, {"orthographic", {{"xmag", 9}, {"ymag", 2}, {"zfar", 10}, {"znear", 0}}}};
+  imported.gltf["cameras"][0] = {{"name", "Lens"},
+                                 {"type", "orthographic"},
+                                 {"orthographic", {{"xmag", 9}, {"ymag", 2}, {"zfar", 10}, {"znear", 0}}}};
   const Camera camera = choose_camera(make_look_document(std::move(imported)), "Lens", 100, 50);
   const CameraRay left = camera_ray(camera, 0, 25), middle = camera_ray(camera, 50, 25);
   EXPECT_EQ(left.direction, middle.direction);

@@ -100,7 +100,8 @@ TEST_F(Cli, a_scene_without_camera_or_light_names_the_flag) {
   const std::string geometry = R"("nodes":[{"name":"N"}],"scenes":[{"nodes":[0]}])";
   write_text(at("bare.gltf"), R"({"asset":{"version":"2.0"},)" + geometry + "}");
   expect_error(relook({"render", at("bare.gltf"), "-o", at("x.exr")}), 2, "--camera auto");
-  expect_error(relook({"render", at("bare.gltf"), "-o", at("x.exr"), "--camera", "0,0,5:0,0,0:40"}), 2, "--lights auto");
+  expect_error(relook({"render", at("bare.gltf"), "-o", at("x.exr"), "--camera", "0,0,5:0,0,0:40"}), 2,
+               "--lights auto");
 }
 
 TEST_F(Cli, replay_writes_frames_previews_and_a_report) {
@@ -135,8 +136,7 @@ TEST_F(Cli, a_replayed_frame_equals_the_rendered_one) {
                       "--resolution", "72x40", "--quiet"})
                   .exit_code,
               0);
-    const ProgramResult compared =
-        relook({"compare", at("run/frames/" + std::string(frame) + ".exr"), at("full.exr")});
+    const ProgramResult compared = relook({"compare", at("run/frames/" + std::string(frame) + ".exr"), at("full.exr")});
     EXPECT_EQ(compared.exit_code, 0) << compared.output;
   }
 }
@@ -164,8 +164,8 @@ TEST_F(Cli, compare_finds_differences_and_exits_10) {
   ASSERT_EQ(preprocess("c").exit_code, 0);
   write_text(at("j.json"), kJournal);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
-  const ProgramResult result = relook({"compare", at("run/frames/0000.exr"), at("run/frames/0001.exr"), "-o",
-                                       at("difference"), "--progress", "none"});
+  const ProgramResult result = relook(
+      {"compare", at("run/frames/0000.exr"), at("run/frames/0001.exr"), "-o", at("difference"), "--progress", "none"});
   EXPECT_EQ(result.exit_code, 10);
   EXPECT_GT(read_json(at("difference/compare.json"))["total"]["pixels_different"], 0);
   std::filesystem::copy(at("run"), at("copy"), std::filesystem::copy_options::recursive);

@@ -141,6 +141,17 @@ TEST(Preview, is_a_png_of_srgb_codes) {
   EXPECT_EQ(row, (std::vector<std::uint8_t>{0, 188, 255, 255, 0, 255, 0, 255, 10, 127, 3, 255}));
 }
 
+TEST(Preview, updated_bands_give_the_bytes_of_a_fresh_encoding) {
+  Frame frame = gradient_frame();
+  PreviewEncoder encoder(kWidth, kHeight);
+  encoder.update(frame);
+  EXPECT_EQ(encoder.png(), encode_png(frame));
+  frame.pixels[kWidth * 69 + 3] = Rgba(0.2F, 0.9F, 0.4F, 1);
+  encoder.update(frame, std::vector<std::uint32_t>{kWidth * 69 + 3});
+  EXPECT_EQ(encoder.png(), encode_png(frame));
+  EXPECT_EQ(decode_pyramid(encoder.png(), true, "preview", "")->levels[0].height, kHeight);
+}
+
 TEST(Compare, counts_bits_and_measures_errors) {
   Frame a{2, 2, std::vector<Rgba>(4, Rgba(0, 0, 0, 1))}, b = a;
   b.pixels[3].g = 0.5F;

@@ -74,8 +74,9 @@ TEST(Look, every_default_is_filled_in) {
   EXPECT_EQ(look_at(look, "/materials/Gold/extensions/KHR_materials_sheen/sheenColorFactor"), Json({0, 0, 0}));
   EXPECT_EQ(look_at(look, "/materials/Gold/extras/relook/model"), "metallic-roughness");
   EXPECT_EQ(look_at(look, "/materials/Phong/extras/relook/shininess"), 32);
-  EXPECT_EQ(look_at(look, "/materials/Gold/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale"),
-            Json({1, 1}));
+  EXPECT_EQ(
+      look_at(look, "/materials/Gold/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale"),
+      Json({1, 1}));
   EXPECT_EQ(look_at(look, "/nodes/Sphere/extensions/KHR_node_visibility/visible"), true);
   EXPECT_EQ(look_at(look, "/nodes/Floor/translation"), Json({0, 0, 0}));
   EXPECT_EQ(look_at(look, "/lights/Bulb/color"), Json({1, 1, 1}));
@@ -99,7 +100,8 @@ TEST(Look, what_is_not_supported_is_left_out) {
           "animations": [{}], "skins": [{}], "accessors": [{}]})"));
   EXPECT_FALSE(document.look["materials"]["A"]["extensions"].contains("KHR_materials_iridescence"));
   EXPECT_TRUE(document.look["materials"]["A"]["extras"].is_object());
-  for (const char* key : {"animations", "skins", "accessors", "cameras", "asset"}) EXPECT_FALSE(document.look.contains(key));
+  for (const char* key : {"animations", "skins", "accessors", "cameras", "asset"})
+    EXPECT_FALSE(document.look.contains(key));
   EXPECT_FALSE(make_look_document(small_gltf()).look["meshes"]["Ball"]["primitives"][0].contains("attributes"));
 }
 

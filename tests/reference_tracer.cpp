@@ -42,19 +42,30 @@ double fresnel_exact(double cosine, double eta) {
 
 }  // namespace
 
-double sheen_albedo(double cosine, double roughness) {
-  const int steps = 128;
+namespace {
+double integrated_sheen(double cosine, double roughness) {
+  const int steps = 40;
   const Vec view(std::sqrt(1 - cosine * cosine), 0, cosine);
   double sum = 0;
   for (int i = 0; i < steps; ++i) {
     const double nl = (i + 0.5) / steps, sine = std::sqrt(1 - nl * nl);
     for (int j = 0; j < steps; ++j) {
-      const double phi = (j + 0.5) / steps * kPi;
+      const double phi = (j + 0.5) / steps * 2 * kPi;
       const Vec h = (view + Vec(sine * std::cos(phi), sine * std::sin(phi), nl)).normalized();
       sum += charlie(h.z, nl, cosine, roughness) * nl;
     }
   }
-  return sum / (steps * steps) * 2 * kPi;
+  return std::min(sum / (steps * steps) * 2 * kPi, 1.0);
+}
+}  // namespace
+
+double sheen_albedo(double cosine, double roughness) {
+  const int last = 9;
+  const double x = std::sqrt(cosine) * last, y = roughness * last;
+  const int column = std::min(static_cast<int>(x), last - 1), row = std::min(static_cast<int>(y), last - 1);
+  const auto node = [&](int i, int j) { return integrated_sheen(std::pow(double(i) / last, 2), double(j) / last); };
+  const auto along = [&](int j) { return node(column, j) * (column + 1 - x) + node(column + 1, j) * (x - column); };
+  return along(row) * (row + 1 - y) + along(row + 1) * (y - row);
 }
 
 ReferenceTracer::ReferenceTracer(const Scene& scene, std::uint32_t max_depth) : scene_(scene), max_depth_(max_depth) {
@@ -80,13 +91,17 @@ ReferenceTracer::Found ReferenceTracer::nearest(Vec origin, Vec direction) const
   return best;
 }
 
-Vec ReferenceTracer::tint_of(const Found& crossing, Vec direction, double inside_length) const {
-  const Surface s = surface_at(crossing, {Vec(0, 0, 0), direction, 0, 0});
+Vec ReferenceTracer::tint_of(const Found& crossing, Vec direction, double inside_length, double footprint) const {
+  Surface s = surface_at(crossing, {Vec(0, 0, 0), direction, 0, 0});
+  s.width = footprint;
+  s.incidence = 1;
+  s.with_level = true;
+  read_material(s);
   const Material& m = *s.material;
   if (!s.optics.passes_light) return Vec(0, 0, 0);
   Vec through(0, 0, 0);
   if (m.model == IlluminationModel::metallic_roughness)
-    through = (s.inside ? Vec(1, 1, 1) : s.base) * s.transmission * (1 - s.metallic);
+    through = (s.optics.volume && s.inside ? Vec(1, 1, 1) : s.base) * s.transmission * (1 - s.metallic);
   if (m.model == IlluminationModel::blinn_phong)
     through = s.base * std::min(1.0, double{m.refraction} + m.transparency);
   if (s.optics.volume && s.inside && std::isfinite(m.attenuation_distance))
@@ -95,7 +110,7 @@ Vec ReferenceTracer::tint_of(const Found& crossing, Vec direction, double inside
   return Vec(1, 1, 1) * (1 - s.coverage) + through * s.coverage;
 }
 
-Vec ReferenceTracer::visibility(Vec p, Vec toward, double distance) const {
+Vec ReferenceTracer::visibility(Vec p, Vec toward, double distance, double footprint) const {
   std::vector<Found> crossings;
   for (const WorldTriangle& triangle : triangles_) {
     const LineHit hit = intersect(triangle, p, toward);
@@ -107,7 +122,7 @@ Vec ReferenceTracer::visibility(Vec p, Vec toward, double distance) const {
   std::map<std::uint32_t, double> entered;  // object -> where the segment last went in
   for (const Found& crossing : crossings) {
     const std::uint32_t object = crossing.triangle->object;
-    light *= tint_of(crossing, toward, crossing.t - entered[object]);
+    light *= tint_of(crossing, toward, crossing.t - entered[object], footprint);
     entered[object] = crossing.t;
   }
   return light;
@@ -132,7 +147,7 @@ std::vector<ReferenceTracer::Arriving> ReferenceTracer::lamps(const Surface& s) 
     }
     if (s.ng.dot(toward) <= 0) continue;
     const Vec start = s.p + s.ng * kOffset;
-    arriving.push_back({toward, irradiance * visibility(start, toward, distance)});
+    arriving.push_back({toward, irradiance * visibility(start, toward, distance, s.width / s.incidence)});
   }
   return arriving;
 }
@@ -229,7 +244,7 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
     const auto bent = refracted(s.view, s.n, s.inside ? ior : 1 / ior);
     if (!s.optics.bent || bent) {
       const Answer answer = spawn(s, ray, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
-      const Vec filter = s.inside ? Vec(1, 1, 1) : s.base;
+      const Vec filter = s.optics.volume && s.inside ? Vec(1, 1, 1) : s.base;
       color += filter * (dielectric * s.transmission * (1 - largest(fd(weight)))) * beer(s, !s.inside, answer);
     }
   }

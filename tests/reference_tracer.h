@@ -77,9 +77,9 @@ class ReferenceTracer {
   [[nodiscard]] Vec bent_normal(const Surface& s, Slot slot, double scale) const;
   void read_material(Surface& s) const;
 
-  [[nodiscard]] Vec tint_of(const Found& crossing, Vec direction, double inside_length) const;
+  [[nodiscard]] Vec tint_of(const Found& crossing, Vec direction, double inside_length, double footprint) const;
   /// What reaches `p` from a light through the tinted crossings; 0 behind an opaque blocker.
-  [[nodiscard]] Vec visibility(Vec p, Vec toward, double distance) const;
+  [[nodiscard]] Vec visibility(Vec p, Vec toward, double distance, double footprint) const;
   struct Arriving {
     Vec toward, irradiance;
   };
@@ -100,7 +100,8 @@ class ReferenceTracer {
   [[nodiscard]] const Mesh& mesh_of(std::uint32_t object) const;
 };
 
-/// Albedo of the sheen lobe by numerical integration over the hemisphere.
+/// Directional albedo of the sheen lobe, at most 1: integrated over the hemisphere at the nodes of a grid of 10 x 10
+/// over sqrt(cosine) and roughness, linear in between.
 [[nodiscard]] double sheen_albedo(double cosine, double roughness);
 
 }  // namespace relook

@@ -257,9 +257,11 @@ Edit replace_edit(const std::string& pointer, Json value) {
   return {operation};
 }
 
-SceneState compiled_again(const SceneState& state) {
-  return SceneState(state.document(), state.scene().camera, state.pyramids());
+SceneState with_camera(const SceneState& state, const Camera& camera) {
+  return SceneState(state.document(), camera, state.pyramids());
 }
+
+SceneState compiled_again(const SceneState& state) { return with_camera(state, state.scene().camera); }
 
 Frame rendered(const Scene& scene, ViewOptions view) {
   RenderStats stats;

@@ -74,6 +74,8 @@ enum class TestScene { spheres, cards, study };
 /// One "replace".
 [[nodiscard]] Edit replace_edit(const std::string& pointer, Json value);
 
+/// The same scene through another camera.
+[[nodiscard]] SceneState with_camera(const SceneState& state, const Camera& camera);
 /// Compiled from scratch out of the look document as it is now.
 [[nodiscard]] SceneState compiled_again(const SceneState& state);
 [[nodiscard]] Frame rendered(const Scene& scene, ViewOptions view);

@@ -50,8 +50,8 @@ std::string printable(std::string_view text) {
   clean.reserve(text.size());
   while (!text.empty()) {
     const std::size_t length = utf8_length(text);
-    const bool is_c1_control = length == 2 && static_cast<unsigned char>(text[0]) == 0xC2 &&
-                               static_cast<unsigned char>(text[1]) < 0xA0;
+    const bool is_c1_control =
+        length == 2 && static_cast<unsigned char>(text[0]) == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0;
     if (length == 0)
       clean += '?';
     else if (length > 1 && !is_c1_control)

@@ -6,7 +6,9 @@
 
 namespace relook {
 
-std::uint64_t hash64(BytesView bytes, std::uint64_t seed) { return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed); }
+std::uint64_t hash64(BytesView bytes, std::uint64_t seed) {
+  return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);
+}
 
 std::string hash128(BytesView bytes) {
   const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());

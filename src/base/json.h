@@ -21,7 +21,8 @@ using Json = nlohmann::json;
 /// One token of a JSON pointer, escaped ("~" to "~0", "/" to "~1").
 [[nodiscard]] std::string escape_token(std::string_view token);
 /// The unescaped tokens of a JSON pointer. Throws InputError when it does not start with "/" or has a bad escape.
-[[nodiscard]] std::vector<std::string> split_pointer(std::string_view pointer, std::string_view file, std::string_view where);
+[[nodiscard]] std::vector<std::string> split_pointer(std::string_view pointer, std::string_view file,
+                                                     std::string_view where);
 
 /// A value and its place. Every reading function throws InputError{file, pointer, ...} when the value does not fit.
 class JsonView {

@@ -12,8 +12,8 @@ using Point = Imath::V3f;
 using Direction = Imath::V3f;
 using Normal = Imath::V3f;
 using Uv = Imath::V2f;
-using Color = Imath::C3f;   // linear RGB
-using Rgba = Imath::C4f;    // linear RGB, coverage
+using Color = Imath::C3f;  // linear RGB
+using Rgba = Imath::C4f;   // linear RGB, coverage
 using Transform = Imath::M44f;
 using Box = Imath::Box3f;
 

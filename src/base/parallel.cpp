@@ -19,7 +19,8 @@ std::unique_ptr<tbb::global_control>& limit() {
 
 void set_thread_count(std::size_t threads) {
   limit().reset();
-  if (threads > 0) limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
+  if (threads > 0)
+    limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
 
 std::size_t thread_count() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }

@@ -62,9 +62,9 @@ namespace relook {
 
 /// sin(2 pi x), for |x| < 2^31.
 [[nodiscard]] inline float portable_sin_turns(float x) {
-  const float f = x - portable_floor(x + 0.5F);                  // [-1/2, 1/2]
+  const float f = x - portable_floor(x + 0.5F);  // [-1/2, 1/2]
   const float folded = f > 0.25F ? 0.5F - f : (f < -0.25F ? -0.5F - f : f);
-  const float a = folded * 6.28318531F;                          // [-pi/2, pi/2]
+  const float a = folded * 6.28318531F;  // [-pi/2, pi/2]
   const float a2 = a * a;
   float p = -2.50521084e-8F;
   p = p * a2 + 2.75573192e-6F;
@@ -79,7 +79,7 @@ namespace relook {
 [[nodiscard]] inline float portable_atan2_turns(float y, float x) {
   const float ax = std::fabs(x), ay = std::fabs(y);
   const float large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
-  const float ratio = large > 0.0F ? small / large : 0.0F;       // [0, 1]
+  const float ratio = large > 0.0F ? small / large : 0.0F;  // [0, 1]
   // atan(r) = atan(c) + atan((r - c) / (1 + r c)) with tan c = 1/2, so that the series converges quickly.
   const float z = ratio > 0.25F ? (ratio - 0.5F) / (1.0F + 0.5F * ratio) : ratio;  // |z| <= 1/3
   const float z2 = z * z;

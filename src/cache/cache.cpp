@@ -27,7 +27,9 @@ struct PartFile {
   std::size_t group = 0;  // of Part::trees
 };
 
-std::size_t group_count(const Camera& camera) { return (cache_tile_count(camera) + kTilesPerGroup - 1) / kTilesPerGroup; }
+std::size_t group_count(const Camera& camera) {
+  return (cache_tile_count(camera) + kTilesPerGroup - 1) / kTilesPerGroup;
+}
 
 std::vector<PartFile> parts_of(const Camera& camera) {
   std::vector<PartFile> parts{{Part::look}, {Part::geometry}, {Part::textures}, {Part::frame}, {Part::paths}};
@@ -49,12 +51,18 @@ std::string stem(const PartFile& part) {
 
 Bytes encode(const PartFile& part, const CacheContent& content, const CacheIdentity& identity) {
   switch (part.part) {
-    case Part::look: return encode_look(content.document);
-    case Part::geometry: return encode_geometry(content.document, identity);
-    case Part::textures: return encode_textures(*content.document.assets, *content.pyramids, identity);
-    case Part::frame: return encode_frame(content, identity);
-    case Part::paths: return encode_paths(content, identity);
-    case Part::trees: return encode_trees(content, part.group, identity);
+    case Part::look:
+      return encode_look(content.document);
+    case Part::geometry:
+      return encode_geometry(content.document, identity);
+    case Part::textures:
+      return encode_textures(*content.document.assets, *content.pyramids, identity);
+    case Part::frame:
+      return encode_frame(content, identity);
+    case Part::paths:
+      return encode_paths(content, identity);
+    case Part::trees:
+      return encode_trees(content, part.group, identity);
   }
   return {};
 }
@@ -81,12 +89,18 @@ void decode(const PartFile& part, BytesView bytes, Reading& reading) {
   const CacheIdentity& identity = reading.manifest.identity;
   CacheContent& content = reading.content;
   switch (part.part) {
-    case Part::look: return decode_look(bytes, content.document);
-    case Part::geometry: return decode_geometry(bytes, identity, content.document, *reading.assets);
-    case Part::textures: return decode_textures(bytes, identity, *reading.assets, *content.pyramids);
-    case Part::frame: return decode_frame(bytes, identity, content);
-    case Part::paths: return decode_paths(bytes, identity, content);
-    case Part::trees: return decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
+    case Part::look:
+      return decode_look(bytes, content.document);
+    case Part::geometry:
+      return decode_geometry(bytes, identity, content.document, *reading.assets);
+    case Part::textures:
+      return decode_textures(bytes, identity, *reading.assets, *content.pyramids);
+    case Part::frame:
+      return decode_frame(bytes, identity, content);
+    case Part::paths:
+      return decode_paths(bytes, identity, content);
+    case Part::trees:
+      return decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
   }
 }
 
@@ -177,22 +191,29 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
 
 std::string_view sentence(CacheFault fault) {
   switch (fault) {
-    case CacheFault::none: return "the cache is sound";
-    case CacheFault::missing: return "there is no cache here";
-    case CacheFault::not_a_cache: return "this is not a relook cache";
-    case CacheFault::other_version: return "the cache was written by another version of relook; preprocess again";
-    case CacheFault::other_scene: return "the cache is of another scene; preprocess again";
-    case CacheFault::other_options: return "the cache is of another camera, resolution or sampling; preprocess again";
-    case CacheFault::truncated: return "the cache is cut short; preprocess again";
-    case CacheFault::damaged: return "the cache is damaged; preprocess again";
+    case CacheFault::none:
+      return "the cache is sound";
+    case CacheFault::missing:
+      return "there is no cache here";
+    case CacheFault::not_a_cache:
+      return "this is not a relook cache";
+    case CacheFault::other_version:
+      return "the cache was written by another version of relook; preprocess again";
+    case CacheFault::other_scene:
+      return "the cache is of another scene; preprocess again";
+    case CacheFault::other_options:
+      return "the cache is of another camera, resolution or sampling; preprocess again";
+    case CacheFault::truncated:
+      return "the cache is cut short; preprocess again";
+    case CacheFault::damaged:
+      return "the cache is damaged; preprocess again";
   }
   return "";
 }
 
 std::string options_hash(const CacheContent& content) {
-  const Json options{{"camera", camera_json(content.camera)},
-                     {"samples", content.samples},
-                     {"max_depth", content.max_depth}};
+  const Json options{
+      {"camera", camera_json(content.camera)}, {"samples", content.samples}, {"max_depth", content.max_depth}};
   return hash128(bytes_of(options.dump()));
 }
 

@@ -17,13 +17,13 @@ namespace relook {
 
 /// Everything a replay needs. Plain data; the engine turns it into a SceneState and an Image and back.
 struct CacheContent {
-  LookDocument document;   // with meshes and encoded images
+  LookDocument document;  // with meshes and encoded images
   std::shared_ptr<PyramidStore> pyramids;
   Camera camera;
   std::uint32_t samples = 1, max_depth = 6;
-  std::string scene_hash;  // XXH3-128 over the scene file's bytes and the look patch
-  std::uint32_t objects = 0, lights = 0;         // of the compiled scene: all slots; living lights
-  std::vector<Rgba> frame;                       // [height * width]
+  std::string scene_hash;                 // XXH3-128 over the scene file's bytes and the look patch
+  std::uint32_t objects = 0, lights = 0;  // of the compiled scene: all slots; living lights
+  std::vector<Rgba> frame;                // [height * width]
   PathTable paths;
   std::vector<TileTrees> trees;                  // [tiles]
   std::vector<std::vector<Rgba>> sample_colors;  // [tiles][samples]
@@ -42,9 +42,9 @@ struct CacheAnswer {
 /// Throws InputError when something other than a cache or an empty folder is at `path`: it would not be replaced.
 void refuse_foreign_folder(const std::filesystem::path& path);
 
-/// Writes to a temporary folder beside `path` and publishes by rename; an existing cache at `path` is replaced whole, an
-/// existing folder that is not a cache is refused (InputError). Bytes do not depend on the thread count. Throws IoError,
-/// ResourceError; on failure nothing remains.
+/// Writes to a temporary folder beside `path` and publishes by rename; an existing cache at `path` is replaced whole,
+/// an existing folder that is not a cache is refused (InputError). Bytes do not depend on the thread count. Throws
+/// IoError, ResourceError; on failure nothing remains.
 void write_cache(const std::filesystem::path& path, const CacheContent& content);
 
 /// Reads and verifies every hash and every index. On any fault `content` is untouched.

@@ -35,7 +35,7 @@ inline void check_sound(bool sound, const std::string& detail) {
 
 /// Types whose bytes are their value (Imath's types are, without being trivially copyable).
 template <class T>
-inline constexpr bool is_plain = std::is_standard_layout_v<T> && std::is_trivially_destructible_v<T>;
+inline constexpr bool is_plain = std::is_standard_layout_v<T>&& std::is_trivially_destructible_v<T>;
 
 class ContainerWriter {
  public:

@@ -151,7 +151,8 @@ struct GroupColumns {
       trees.first_hit.push_back(static_cast<std::uint32_t>(hits));
     }
     trees.hits.reserve(hits);
-    for (std::size_t i = 0; i < hits; ++i, ++next_hit) trees.hits.push_back({primitives[next_hit], u[next_hit], v[next_hit]});
+    for (std::size_t i = 0; i < hits; ++i, ++next_hit)
+      trees.hits.push_back({primitives[next_hit], u[next_hit], v[next_hit]});
     return trees;
   }
 };

@@ -107,7 +107,8 @@ void check_format(const Json& document) {
   if (!format.starts_with(kFormatPrefix)) throw CacheDamage(CacheFault::not_a_cache, "MANIFEST.json is not of a cache");
   const std::string expected = std::string(kFormatPrefix) + std::to_string(kCacheFormat);
   if (format != expected)
-    throw CacheDamage(CacheFault::other_version, "its format is " + printable(format) + ", this program reads " + expected);
+    throw CacheDamage(CacheFault::other_version,
+                      "its format is " + printable(format) + ", this program reads " + expected);
 }
 
 }  // namespace

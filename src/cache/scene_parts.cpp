@@ -68,7 +68,8 @@ Json names_entry(const LookDocument& document) {
   for (std::size_t s = 0; s < kSectionCount; ++s)
     order[std::string(section_name(static_cast<Section>(s)))] = document.order[s];
   Json instances = Json::array();
-  for (const auto& [node, matrices] : document.instances) instances.push_back({{"node", node}, {"count", matrices.size()}});
+  for (const auto& [node, matrices] : document.instances)
+    instances.push_back({{"node", node}, {"count", matrices.size()}});
   Json groups = Json::object();
   for (const auto& [name, ids] : document.assets->mesh_primitives) {
     Json& group = groups[name] = Json::array();
@@ -76,12 +77,8 @@ Json names_entry(const LookDocument& document) {
   }
   Json meshes = Json::array();
   for (const Mesh& mesh : document.assets->meshes) meshes.push_back(mesh_entry(mesh));
-  return {{"order", std::move(order)},
-          {"instances", std::move(instances)},
-          {"groups", std::move(groups)},
-          {"meshes", std::move(meshes)},
-          {"cameras", document.cameras},
-          {"file", document.file}};
+  return {{"order", std::move(order)},   {"instances", std::move(instances)}, {"groups", std::move(groups)},
+          {"meshes", std::move(meshes)}, {"cameras", document.cameras},       {"file", document.file}};
 }
 
 /// Runs a reader of JSON that this program has written: what does not fit is damage, not bad input.
@@ -100,9 +97,15 @@ std::uint64_t size_at(const JsonView& view, const char* key) {
 
 struct GeometryColumns {
   explicit GeometryColumns(const ContainerReader& reader)
-      : positions(reader, "positions"), triangles(reader, "triangles"), normals(reader, "normals"),
-        tangents(reader, "tangents"), uv0(reader, "uv0"), uv1(reader, "uv1"), colors(reader, "colors"),
-        bounds(reader, "bounds"), min_alpha(reader, "min_alpha") {}
+      : positions(reader, "positions"),
+        triangles(reader, "triangles"),
+        normals(reader, "normals"),
+        tangents(reader, "tangents"),
+        uv0(reader, "uv0"),
+        uv1(reader, "uv1"),
+        colors(reader, "colors"),
+        bounds(reader, "bounds"),
+        min_alpha(reader, "min_alpha") {}
   void finish() const {
     positions.finish(), triangles.finish(), normals.finish(), tangents.finish(), uv0.finish(), uv1.finish();
     colors.finish(), bounds.finish(), min_alpha.finish();
@@ -132,9 +135,10 @@ Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
   mesh.bounds = Box(corners[0], corners[1]);
   mesh.min_alpha = columns.min_alpha.take(1)[0];
 
-  for (const std::size_t size : {mesh.normals.size(), mesh.tangents.size(), mesh.uv[0].size(), mesh.uv[1].size(),
-                                 mesh.colors.size()})
-    check_sound(size == 0 || size == mesh.positions.size(), "columns of mesh " + printable(mesh.name) + " differ in length");
+  for (const std::size_t size :
+       {mesh.normals.size(), mesh.tangents.size(), mesh.uv[0].size(), mesh.uv[1].size(), mesh.colors.size()})
+    check_sound(size == 0 || size == mesh.positions.size(),
+                "columns of mesh " + printable(mesh.name) + " differ in length");
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle)
       check_sound(vertex < mesh.positions.size(), "a vertex that does not exist in mesh " + printable(mesh.name));
@@ -154,8 +158,8 @@ void read_names(const JsonView& names, LookDocument& document, Assets& assets) {
     group.require_array();
     std::vector<MeshId>& ids = assets.mesh_primitives[name];
     for (std::size_t i = 0; i < group.size(); ++i)
-      ids.emplace_back(static_cast<std::uint32_t>(
-          group.at(i).integer(0, static_cast<std::int64_t>(assets.meshes.size()) - 1)));
+      ids.emplace_back(
+          static_cast<std::uint32_t>(group.at(i).integer(0, static_cast<std::int64_t>(assets.meshes.size()) - 1)));
   }
   names.at("cameras").require_object();
   document.cameras = names.at("cameras").value();

@@ -1,5 +1,5 @@
-// The scene side of a cache as files: look document, geometry, textures. Each encode_ has its decode_, which checks every
-// index, count and number and throws CacheDamage.
+// The scene side of a cache as files: look document, geometry, textures. Each encode_ has its decode_, which checks
+// every index, count and number and throws CacheDamage.
 #pragma once
 #include <string>
 

@@ -27,7 +27,8 @@ StagedFolder::StagedFolder(const std::filesystem::path& final_path) {
   final_ = std::filesystem::weakly_canonical(without_trailing_slash(final_path), ignored);
   if (final_.empty() || !final_.has_filename()) throw IoError(final_path.string(), "no folder can be written here");
   make_folders(final_.parent_path());
-  const std::string stem = "." + final_.filename().string() + ".relook-" + std::to_string(getpid()) + "-";
+  const std::string stem =
+      std::string(".").append(final_.filename().string()) + ".relook-" + std::to_string(getpid()) + "-";
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     staged_ = final_.parent_path() / (stem + std::to_string(attempt));
     if (mkdir(staged_.c_str(), 0777) == 0) return;

@@ -6,7 +6,8 @@ namespace relook {
 
 class StagedFolder {
  public:
-  /// Creates the temporary folder beside `final_path`, whose parents are created as needed. Throws IoError, ResourceError.
+  /// Creates the temporary folder beside `final_path`, whose parents are created as needed. Throws IoError,
+  /// ResourceError.
   explicit StagedFolder(const std::filesystem::path& final_path);
   /// Removes whatever was not published.
   ~StagedFolder();

@@ -135,8 +135,9 @@ void decode_textures(BytesView file, const CacheIdentity& identity, Assets& asse
     const std::vector<Rgba> ranges = reader.column<Rgba>("ranges", std::uint64_t{entries.size()} * 2);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       const JsonView entry = entries.at(i);
-      pyramids.put(entry.at("image").text(), entry.at("color").boolean(),
-                   read_pyramid(entry, blob_name("pyramid", i), std::span<const Rgba>(ranges).subspan(2 * i, 2), reader));
+      pyramids.put(
+          entry.at("image").text(), entry.at("color").boolean(),
+          read_pyramid(entry, blob_name("pyramid", i), std::span<const Rgba>(ranges).subspan(2 * i, 2), reader));
     }
   } catch (const InputError& fault) {
     throw CacheDamage(CacheFault::damaged, fault.what());

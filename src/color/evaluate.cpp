@@ -63,12 +63,18 @@ void run_arithmetic(Op op, const float* __restrict a, const float* __restrict b,
 float leaf_value(const ColorProgram::Step& step, const Scene& scene, MaterialId material) {
   const std::uint32_t low = step.payload & 0xFFU, high = step.payload >> 8;
   switch (step.op) {
-    case Op::constant: return std::bit_cast<float>(step.payload);
-    case Op::material_field: return field_value(scene.material(material), static_cast<Field>(low), high);
-    case Op::light_field: return field_value(scene.light(LightId(high)), static_cast<LightField>(low));
-    case Op::ambient: return scene.ambient[static_cast<int>(low)];
-    case Op::environment: return scene.environment.color[static_cast<int>(low)] * scene.environment.intensity;
-    default: return 0;
+    case Op::constant:
+      return std::bit_cast<float>(step.payload);
+    case Op::material_field:
+      return field_value(scene.material(material), static_cast<Field>(low), high);
+    case Op::light_field:
+      return field_value(scene.light(LightId(high)), static_cast<LightField>(low));
+    case Op::ambient:
+      return scene.ambient[static_cast<int>(low)];
+    case Op::environment:
+      return scene.environment.color[static_cast<int>(low)] * scene.environment.intensity;
+    default:
+      return 0;
   }
 }
 
@@ -76,7 +82,7 @@ bool is_leaf(Op op) { return op <= Op::environment; }
 
 Rgba environment_value(const Environment& environment, const Direction& d) {
   // The image's middle looks along -z; rotation turns the surroundings about +y.
-  const float around = portable_atan2_turns(d.x, -d.z) - environment.rotation * 0.15915494F;
+  const float around = portable_atan2_turns(d.x, -d.z) + environment.rotation * 0.15915494F;
   const Uv uv(around + 0.5F, 0.5F - 2.0F * portable_asin_turns(d.y));
   return sample(*environment.image, uv, 0, Wrap::repeat, Wrap::clamp, false);
 }

@@ -43,54 +43,94 @@ FieldMask changed_fields(const Material& a, const Material& b) {
 float field_value(const Material& m, Field field, unsigned component) {
   const auto of = [&](const auto& vector) { return vector[static_cast<int>(component)]; };
   switch (field) {
-    case Field::base_color: return of(m.base_color);
-    case Field::metallic: return m.metallic;
-    case Field::roughness: return m.roughness;
-    case Field::normal_scale: return m.normal_scale;
-    case Field::occlusion_strength: return m.occlusion_strength;
-    case Field::emissive: return of(m.emissive);
-    case Field::emissive_strength: return m.emissive_strength;
-    case Field::ior: return m.ior;
-    case Field::transmission: return m.transmission;
-    case Field::thickness: return m.thickness;
-    case Field::attenuation_distance: return m.attenuation_distance;
-    case Field::attenuation_color: return of(m.attenuation_color);
-    case Field::specular: return m.specular;
-    case Field::specular_color: return of(m.specular_color);
-    case Field::clearcoat: return m.clearcoat;
-    case Field::clearcoat_roughness: return m.clearcoat_roughness;
-    case Field::clearcoat_normal_scale: return m.clearcoat_normal_scale;
-    case Field::sheen_color: return of(m.sheen_color);
-    case Field::sheen_roughness: return m.sheen_roughness;
-    case Field::phong_ambient: return of(m.phong_ambient);
-    case Field::phong_diffuse: return of(m.phong_diffuse);
-    case Field::phong_specular: return of(m.phong_specular);
-    case Field::shininess: return m.shininess;
-    case Field::reflection: return m.reflection;
-    case Field::refraction: return m.refraction;
-    case Field::transparency: return m.transparency;
+    case Field::base_color:
+      return of(m.base_color);
+    case Field::metallic:
+      return m.metallic;
+    case Field::roughness:
+      return m.roughness;
+    case Field::normal_scale:
+      return m.normal_scale;
+    case Field::occlusion_strength:
+      return m.occlusion_strength;
+    case Field::emissive:
+      return of(m.emissive);
+    case Field::emissive_strength:
+      return m.emissive_strength;
+    case Field::ior:
+      return m.ior;
+    case Field::transmission:
+      return m.transmission;
+    case Field::thickness:
+      return m.thickness;
+    case Field::attenuation_distance:
+      return m.attenuation_distance;
+    case Field::attenuation_color:
+      return of(m.attenuation_color);
+    case Field::specular:
+      return m.specular;
+    case Field::specular_color:
+      return of(m.specular_color);
+    case Field::clearcoat:
+      return m.clearcoat;
+    case Field::clearcoat_roughness:
+      return m.clearcoat_roughness;
+    case Field::clearcoat_normal_scale:
+      return m.clearcoat_normal_scale;
+    case Field::sheen_color:
+      return of(m.sheen_color);
+    case Field::sheen_roughness:
+      return m.sheen_roughness;
+    case Field::phong_ambient:
+      return of(m.phong_ambient);
+    case Field::phong_diffuse:
+      return of(m.phong_diffuse);
+    case Field::phong_specular:
+      return of(m.phong_specular);
+    case Field::shininess:
+      return m.shininess;
+    case Field::reflection:
+      return m.reflection;
+    case Field::refraction:
+      return m.refraction;
+    case Field::transparency:
+      return m.transparency;
     case Field::model:
     case Field::alpha_mode:
-    case Field::count: break;
+    case Field::count:
+      break;
   }
   return 0;
 }
 
 float field_value(const Light& light, LightField field) {
   switch (field) {
-    case LightField::red: return light.color.x;
-    case LightField::green: return light.color.y;
-    case LightField::blue: return light.color.z;
-    case LightField::intensity: return light.intensity;
-    case LightField::inverse_range: return std::isinf(light.range) ? 0.0F : 1.0F / light.range;
-    case LightField::cos_inner: return static_cast<float>(std::cos(double{light.inner_cone}));
-    case LightField::cos_outer: return static_cast<float>(std::cos(double{light.outer_cone}));
-    case LightField::x: return light.position.x;
-    case LightField::y: return light.position.y;
-    case LightField::z: return light.position.z;
-    case LightField::dx: return light.direction.x;
-    case LightField::dy: return light.direction.y;
-    case LightField::dz: return light.direction.z;
+    case LightField::red:
+      return light.color.x;
+    case LightField::green:
+      return light.color.y;
+    case LightField::blue:
+      return light.color.z;
+    case LightField::intensity:
+      return light.intensity;
+    case LightField::inverse_range:
+      return std::isinf(light.range) ? 0.0F : 1.0F / light.range;
+    case LightField::cos_inner:
+      return static_cast<float>(std::cos(double{light.inner_cone}));
+    case LightField::cos_outer:
+      return static_cast<float>(std::cos(double{light.outer_cone}));
+    case LightField::x:
+      return light.position.x;
+    case LightField::y:
+      return light.position.y;
+    case LightField::z:
+      return light.position.z;
+    case LightField::dx:
+      return light.direction.x;
+    case LightField::dy:
+      return light.direction.y;
+    case LightField::dz:
+      return light.direction.z;
   }
   return 0;
 }

@@ -9,10 +9,34 @@ namespace relook {
 
 /// Fields of a material. The texture slots follow as kFirstSlotField + slot.
 enum class Field : std::uint8_t {
-  model, alpha_mode, base_color, metallic, roughness, normal_scale, occlusion_strength, emissive, emissive_strength,
-  ior, transmission, thickness, attenuation_distance, attenuation_color, specular, specular_color,
-  clearcoat, clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness,
-  phong_ambient, phong_diffuse, phong_specular, shininess, reflection, refraction, transparency,
+  model,
+  alpha_mode,
+  base_color,
+  metallic,
+  roughness,
+  normal_scale,
+  occlusion_strength,
+  emissive,
+  emissive_strength,
+  ior,
+  transmission,
+  thickness,
+  attenuation_distance,
+  attenuation_color,
+  specular,
+  specular_color,
+  clearcoat,
+  clearcoat_roughness,
+  clearcoat_normal_scale,
+  sheen_color,
+  sheen_roughness,
+  phong_ambient,
+  phong_diffuse,
+  phong_specular,
+  shininess,
+  reflection,
+  refraction,
+  transparency,
   count
 };
 inline constexpr unsigned kFirstSlotField = static_cast<unsigned>(Field::count);
@@ -31,7 +55,19 @@ using FieldMask = std::uint64_t;
 
 /// Numbers of a light: colour parameters and placement.
 enum class LightField : std::uint8_t {
-  red, green, blue, intensity, inverse_range, cos_inner, cos_outer, x, y, z, dx, dy, dz
+  red,
+  green,
+  blue,
+  intensity,
+  inverse_range,
+  cos_inner,
+  cos_outer,
+  x,
+  y,
+  z,
+  dx,
+  dy,
+  dz
 };
 [[nodiscard]] float field_value(const Light& light, LightField field);
 

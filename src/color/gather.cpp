@@ -25,18 +25,26 @@ float surface_input(Input input, std::uint32_t detail, const Material& material,
   const int axis = static_cast<int>(detail & 15U);
   const auto slot = static_cast<Slot>(detail >> 4);
   switch (input) {
-    case Input::position: return view.point.position[axis];
-    case Input::normal: return view.point.shading[axis];
-    case Input::geometric: return view.point.geometric[axis];
-    case Input::footprint: return view.footprint;
-    case Input::vertex_color: return vertex_color(*view.object.mesh, view.hit)[axis];
-    case Input::tangent: return tangent_frame(view.object, view.hit, view.point, material.slot(slot)).tangent[axis];
-    case Input::bitangent: return tangent_frame(view.object, view.hit, view.point, material.slot(slot)).bitangent[axis];
+    case Input::position:
+      return view.point.position[axis];
+    case Input::normal:
+      return view.point.shading[axis];
+    case Input::geometric:
+      return view.point.geometric[axis];
+    case Input::footprint:
+      return view.footprint;
+    case Input::vertex_color:
+      return vertex_color(*view.object.mesh, view.hit)[axis];
+    case Input::tangent:
+      return tangent_frame(view.object, view.hit, view.point, material.slot(slot)).tangent[axis];
+    case Input::bitangent:
+      return tangent_frame(view.object, view.hit, view.point, material.slot(slot)).bitangent[axis];
     case Input::coordinates: {
       const TextureCoordinates at = texture_coordinates(view.object, view.hit, view.point.local, material.slot(slot));
       return axis == 3 ? at.area_ratio : at.position[axis];
     }
-    default: return 0;
+    default:
+      return 0;
   }
 }
 
@@ -52,12 +60,18 @@ float node_input(Input input, std::uint32_t detail, const TreeBlock& block, cons
                  const BlockColors& colors) {
   const int channel = static_cast<int>(detail & 15U);
   switch (input) {
-    case Input::view: return -node.ray.direction[channel];
-    case Input::length: return node.length;
-    case Input::child: return colors.nodes[node.child[detail >> 4]][channel];
-    case Input::child_length: return block.nodes[node.child[detail & 15U]].length;
-    case Input::tint: return tint(block, node, detail, colors);
-    default: return 0;
+    case Input::view:
+      return -node.ray.direction[channel];
+    case Input::length:
+      return node.length;
+    case Input::child:
+      return colors.nodes[node.child[detail >> 4]][channel];
+    case Input::child_length:
+      return block.nodes[node.child[detail & 15U]].length;
+    case Input::tint:
+      return tint(block, node, detail, colors);
+    default:
+      return 0;
   }
 }
 

@@ -59,9 +59,8 @@ std::array<Value, 4> filter_expression(SurfaceTerms& terms) {
     const Scalar share = terms.textured(Field::transmission, Slot::transmission, 0) *
                          (1.0F - terms.textured(Field::metallic, Slot::metallic_roughness, 2));
     through = {share, share, share};
-    if (!terms.key().inside) through = through * terms.base_color();
-    if (terms.key().inside && terms.builder().shape(Field::thickness).thickness > 0)
-      through = through * terms.beer(terms.input(Input::length_inside));
+    const bool leaves_volume = terms.key().inside && terms.builder().shape(Field::thickness).thickness > 0;
+    through = through * (leaves_volume ? terms.beer(terms.input(Input::length_inside)) : terms.base_color());
   }
   if (terms.builder().shape(Field::alpha_mode).alpha_mode != AlphaMode::blend) return values(through, terms.number(1));
   const Scalar coverage = terms.coverage();
@@ -87,9 +86,15 @@ ColorProgram build_program(const Scene& scene, const NodeKey& key) {
   SurfaceTerms terms(builder, key);
   std::array<Value, 4> result{};
   switch (key.kind) {
-    case NodeKind::surface: result = surface_expression(terms); break;
-    case NodeKind::filter: result = filter_expression(terms); break;
-    case NodeKind::environment: result = environment_expression(terms); break;
+    case NodeKind::surface:
+      result = surface_expression(terms);
+      break;
+    case NodeKind::filter:
+      result = filter_expression(terms);
+      break;
+    case NodeKind::environment:
+      result = environment_expression(terms);
+      break;
   }
   return finish(builder, result, key.material);
 }

@@ -23,11 +23,11 @@ struct VisibleLight {
 /// Nodes with equal keys share one program.
 struct NodeKey {
   NodeKind kind = NodeKind::environment;
-  MaterialId material;           // none for the environment
+  MaterialId material;  // none for the environment
   bool inside = false;
   bool vertex_colors = false;
-  bool interface_only = false;   // the inner side of a volume
-  std::uint8_t children = 0;     // bit per Branch
+  bool interface_only = false;  // the inner side of a volume
+  std::uint8_t children = 0;    // bit per Branch
   std::vector<VisibleLight> lights;
   auto operator<=>(const NodeKey&) const = default;
 };

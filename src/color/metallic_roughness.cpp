@@ -1,5 +1,5 @@
-// glTF 2.0 Appendix B with KHR_materials_{ior, specular, transmission, volume, clearcoat, sheen, emissive_strength} as a
-// colour expression. SHADING.md has the formulas.
+// glTF 2.0 Appendix B with KHR_materials_{ior, specular, transmission, volume, clearcoat, sheen, emissive_strength} as
+// a colour expression. SHADING.md has the formulas.
 #include <numbers>
 
 #include "color/surface_terms.h"
@@ -89,7 +89,7 @@ class BaseLayer {
     if (t_.has_child(Branch::refraction)) {
       const Scalar share = (1.0F - metallic_) * transmission_ * (1.0F - largest(dielectric));
       Triple seen = t_.child(Branch::refraction) * share;
-      if (!t_.key().inside) seen = seen * base_;
+      if (!volume || !t_.key().inside) seen = seen * base_;  // a volume tints once, where it is entered
       if (volume && !t_.key().inside) seen = seen * t_.beer(child_length(Branch::refraction));
       sum = sum + seen;
     }
@@ -101,7 +101,9 @@ class BaseLayer {
   [[nodiscard]] Scalar transmission() {
     return may_transmit() ? t_.textured(Field::transmission, Slot::transmission, 0) : t_.number(0);
   }
-  [[nodiscard]] Scalar child_length(Branch branch) { return t_.input(Input::child_length, static_cast<unsigned>(branch)); }
+  [[nodiscard]] Scalar child_length(Branch branch) {
+    return t_.input(Input::child_length, static_cast<unsigned>(branch));
+  }
   [[nodiscard]] Triple dielectric_f0() {
     const Scalar ior = t_.field(Field::ior);
     const Scalar root = (ior - 1.0F) / (ior + 1.0F);
@@ -184,9 +186,7 @@ class CoatLayer {
     return {value, value, value};
   }
   [[nodiscard]] Scalar passed() { return 1.0F - strength_ * fresnel_; }
-  [[nodiscard]] Triple mirror() {
-    return t_.child(Branch::coat) * (strength_ * fresnel_ * mirror_fade(roughness_));
-  }
+  [[nodiscard]] Triple mirror() { return t_.child(Branch::coat) * (strength_ * fresnel_ * mirror_fade(roughness_)); }
 
  private:
   [[nodiscard]] static Scalar coat_fresnel(Scalar cosine) { return schlick(cosine) * 0.96F + 0.04F; }

@@ -12,15 +12,28 @@ namespace {
 
 unsigned operand_count(Op op) {
   switch (op) {
-    case Op::constant: case Op::material_field: case Op::light_field: case Op::ambient: case Op::environment:
+    case Op::constant:
+    case Op::material_field:
+    case Op::light_field:
+    case Op::ambient:
+    case Op::environment:
     case Op::input:
       return 0;
-    case Op::sqrt: case Op::exp2: case Op::log2: case Op::channel:
+    case Op::sqrt:
+    case Op::exp2:
+    case Op::log2:
+    case Op::channel:
       return 1;
-    case Op::add: case Op::subtract: case Op::multiply: case Op::divide: case Op::min: case Op::max:
+    case Op::add:
+    case Op::subtract:
+    case Op::multiply:
+    case Op::divide:
+    case Op::min:
+    case Op::max:
     case Op::sheen_albedo:
       return 2;
-    case Op::if_positive: case Op::environment_map:
+    case Op::if_positive:
+    case Op::environment_map:
       return 3;
     case Op::texture:
       return 5;
@@ -30,13 +43,20 @@ unsigned operand_count(Op op) {
 
 float folded(Op op, float a, float b) {
   switch (op) {
-    case Op::add: return a + b;
-    case Op::subtract: return a - b;
-    case Op::multiply: return a * b;
-    case Op::divide: return a / b;
-    case Op::min: return a < b ? a : b;
-    case Op::max: return a > b ? a : b;
-    default: return 0;
+    case Op::add:
+      return a + b;
+    case Op::subtract:
+      return a - b;
+    case Op::multiply:
+      return a * b;
+    case Op::divide:
+      return a / b;
+    case Op::min:
+      return a < b ? a : b;
+    case Op::max:
+      return a > b ? a : b;
+    default:
+      return 0;
   }
 }
 

@@ -21,25 +21,39 @@ enum class Op : std::uint8_t {
   environment,     // payload: component of color * intensity
   input,           // payload: Input | detail << 8
   // functions of one, two, three values
-  sqrt, exp2, log2, add, subtract, multiply, divide, min, max,
-  if_positive,     // a > 0 ? b : c
-  sheen_albedo,    // (cosine, roughness)
+  sqrt,
+  exp2,
+  log2,
+  add,
+  subtract,
+  multiply,
+  divide,
+  min,
+  max,
+  if_positive,   // a > 0 ? b : c
+  sheen_albedo,  // (cosine, roughness)
   // lookups: four results in consecutive values (see `channel`)
-  texture,         // payload: slot; (x, y, z, area ratio, footprint)
-  environment_map, // direction (x, y, z)
-  channel,         // payload: 1..3, of the lookup given as operand; channel 0 is the lookup itself
+  texture,          // payload: slot; (x, y, z, area ratio, footprint)
+  environment_map,  // direction (x, y, z)
+  channel,          // payload: 1..3, of the lookup given as operand; channel 0 is the lookup itself
 };
 
 /// Per-sample constants of a node, gathered from its hit.
 enum class Input : std::uint8_t {
-  position, normal, geometric, view,         // detail: axis
-  tangent, bitangent,                        // detail: axis | slot << 4
-  vertex_color,                              // detail: channel
-  coordinates,                               // detail: axis (3: area ratio) | slot << 4
-  footprint, length, length_inside,
-  child,                                     // detail: channel | branch << 4
-  child_length,                              // detail: branch
-  tint,                                      // detail: channel | index in the light order << 4
+  position,
+  normal,
+  geometric,
+  view,  // detail: axis
+  tangent,
+  bitangent,     // detail: axis | slot << 4
+  vertex_color,  // detail: channel
+  coordinates,   // detail: axis (3: area ratio) | slot << 4
+  footprint,
+  length,
+  length_inside,
+  child,         // detail: channel | branch << 4
+  child_length,  // detail: branch
+  tint,          // detail: channel | index in the light order << 4
 };
 
 /// A value of an expression: an index into ColorProgram::code while building.
@@ -113,6 +127,7 @@ struct ColorProgram {
 };
 
 /// Drops what `result` does not need, splits uniform from varying code, assigns registers.
-[[nodiscard]] ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result, MaterialId material);
+[[nodiscard]] ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result,
+                                  MaterialId material);
 
 }  // namespace relook

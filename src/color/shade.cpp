@@ -49,13 +49,16 @@ struct Signature {
   bool operator==(const Signature&) const = default;
 };
 struct SignatureHash {
-  std::size_t operator()(const Signature& s) const { return (s.surface * 0x9E3779B97F4A7C15ULL) ^ (s.lights * 0xC2B2AE3D27D4EB4FULL); }
+  std::size_t operator()(const Signature& s) const {
+    return (s.surface * 0x9E3779B97F4A7C15ULL) ^ (s.lights * 0xC2B2AE3D27D4EB4FULL);
+  }
 };
 
 /// Gives nodes dense program numbers within one block.
 class Programs {
  public:
-  Programs(const RayScene& scene, const TreeBlock& block, ProgramTable& table) : scene_(scene), block_(block), table_(table) {}
+  Programs(const RayScene& scene, const TreeBlock& block, ProgramTable& table)
+      : scene_(scene), block_(block), table_(table) {}
 
   std::uint32_t number(const RayNode& node) {
     const Signature signature = signature_of(node);
@@ -160,11 +163,11 @@ void shade(const RayScene& scene, const TreeBlock& block, std::span<const std::u
   if (!block.filters.empty()) {
     std::vector<std::uint32_t> numbers(block.filters.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = programs.number(block.filters[i]);
-    for_each_batch(numbers.size(), programs.size(), [&](std::size_t i) { return numbers[i]; },
-                   [&](std::size_t number, std::span<const std::uint32_t> indices) {
-                     evaluate(programs.program(static_cast<std::uint32_t>(number)), scene, block, true, indices, colors,
-                              scratch);
-                   });
+    for_each_batch(
+        numbers.size(), programs.size(), [&](std::size_t i) { return numbers[i]; },
+        [&](std::size_t number, std::span<const std::uint32_t> indices) {
+          evaluate(programs.program(static_cast<std::uint32_t>(number)), scene, block, true, indices, colors, scratch);
+        });
   }
   std::vector<std::uint32_t> numbers(block.nodes.size());
   std::size_t generations = 0;

@@ -1,4 +1,5 @@
-// Directional albedo of the sheen lobe (Charlie distribution, Ashikhmin visibility; KHR_materials_sheen, "albedo scaling").
+// Directional albedo of the sheen lobe (Charlie distribution, Ashikhmin visibility; KHR_materials_sheen, "albedo
+// scaling").
 #pragma once
 
 namespace relook {

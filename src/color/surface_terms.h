@@ -39,9 +39,13 @@ class SurfaceTerms {
   [[nodiscard]] Triple ambient() { return {{&b_, b_.ambient(0)}, {&b_, b_.ambient(1)}, {&b_, b_.ambient(2)}}; }
 
   [[nodiscard]] Incidence incidence(const VisibleLight& light);
-  [[nodiscard]] bool has_child(Branch branch) const { return (key_.children >> static_cast<unsigned>(branch) & 1U) != 0; }
+  [[nodiscard]] bool has_child(Branch branch) const {
+    return (key_.children >> static_cast<unsigned>(branch) & 1U) != 0;
+  }
   [[nodiscard]] Triple child(Branch branch) { return input3(Input::child, static_cast<unsigned>(branch) << 4); }
-  [[nodiscard]] Scalar child_alpha(Branch branch) { return input(Input::child, 3U | static_cast<unsigned>(branch) << 4); }
+  [[nodiscard]] Scalar child_alpha(Branch branch) {
+    return input(Input::child, 3U | static_cast<unsigned>(branch) << 4);
+  }
   /// Beer's law over `length` metres inside the material.
   [[nodiscard]] Triple beer(Scalar length);
 

@@ -63,7 +63,8 @@ void Transaction::rename_node(const std::string& from, const std::string& to) {
 }
 
 /// A copied node's descendants are copied too, as "<copy>/<name>": a node has one parent.
-void Transaction::copy_descendants(const std::string& copy) {
+void Transaction::copy_descendants(const std::string& copy, const PatchPlace& place) {
+  std::set<std::string> copied{copy};
   std::vector<std::string> todo{copy};
   while (!todo.empty()) {
     const std::string node = std::move(todo.back());
@@ -72,11 +73,14 @@ void Transaction::copy_descendants(const std::string& copy) {
     for (const std::string& child : children_of(find({"nodes", node}))) {
       const Json* original = find({"nodes", child});
       if (original == nullptr) continue;
+      if (!copied.insert(child).second)
+        throw InputError(place.file, place.where, "a node cannot be copied over one of its own descendants");
       const std::string last = child.substr(child.rfind('/') + 1);
       const std::string name = unique_name(copy + "/" + last, [&](const std::string& candidate) {
         return find({"nodes", candidate}) != nullptr;
       });
       add_entry("nodes", name, Json(*original));
+      copied.insert(name);
       copies.push_back(name);
       todo.push_back(name);
     }

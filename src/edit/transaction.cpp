@@ -94,7 +94,7 @@ void Transaction::run(Resolved& resolved) {
     case PatchOp::copy: {
       Json value = value_at(look, resolved.from, from_place);
       add_at(look, path, std::move(value), place);
-      if (is_node(path) && is_node(resolved.from)) copy_descendants(path[1]);
+      if (is_node(path) && is_node(resolved.from)) copy_descendants(path[1], place);
       break;
     }
     case PatchOp::move: {
@@ -184,13 +184,13 @@ void Transaction::normalize_entity(const TouchedEntity& entity, const Resolved& 
   if (!section || entity.name.empty()) return;
   name_indices(document(), *section, *value);
   const bool is_whole = resolved.path.size() <= 2;
+  const bool names_uri = resolved.path.size() == 3 && resolved.path[2] == "uri";
   const PatchPlace place{file_, resolved.operation->where + "/value"};
   if (*section == Section::nodes && value->contains("asset")) {
     merge_asset(entity.name, {file_, is_whole ? place.where + "/asset" : place.where});
     value = find(entity);
   }
-  if (*section == Section::images && (resolved.path.back() == "uri" || !value->contains(kContent)) &&
-      value->contains("uri"))
+  if (*section == Section::images && (names_uri || !value->contains(kContent)) && value->contains("uri"))
     load_image(entity.name, {file_, is_whole ? place.where + "/uri" : place.where});
   if (*section == Section::meshes && !value->contains(kGeometry) &&
       document().assets->mesh_primitives.contains(entity.name))

@@ -47,7 +47,7 @@ class Transaction {
   // node_edits.cpp: what adding, removing, renaming and copying a node means for the nodes around it.
   void remove_node(const std::string& name);
   void rename_node(const std::string& from, const std::string& to);
-  void copy_descendants(const std::string& copy);
+  void copy_descendants(const std::string& copy, const PatchPlace& place);
   [[nodiscard]] std::string current_parent(const std::string& node);
   void replace_mention(const std::string& parent, const std::string& child, const std::string& by);
 

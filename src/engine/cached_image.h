@@ -1,5 +1,5 @@
-// Between a cache and a running replay: what preprocess keeps, and the state and image that are restored from it. What a
-// cache alone cannot check, because it takes the compiled scene, is checked here.
+// Between a cache and a running replay: what preprocess keeps, and the state and image that are restored from it. What
+// a cache alone cannot check, because it takes the compiled scene, is checked here.
 #pragma once
 #include <memory>
 

@@ -24,8 +24,7 @@ std::uint8_t material_flags(const RayObject& before, const RayObject& after) {
       (after.optics.cut_out && !same_holes(*before.material, *after.material)))
     flags |= RayChange::moved | RayChange::shadows;
   if (before.optics.passes_light != after.optics.passes_light) flags |= RayChange::shadows;
-  if (before.optics != after.optics ||
-      (after.optics.spawns() && !same_normals(*before.material, *after.material)))
+  if (before.optics != after.optics || (after.optics.spawns() && !same_normals(*before.material, *after.material)))
     flags |= RayChange::respawns;
   return static_cast<std::uint8_t>(flags);
 }
@@ -97,12 +96,17 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
 
 }  // namespace
 
+FieldMask ColorChange::fields_of(MaterialId material) const {
+  for (const auto& [changed, fields] : materials)
+    if (changed == material) return fields;
+  return 0;
+}
+
 bool ColorChange::reaches(const ColorProgram& program) const {
   if ((ambient && program.dependencies.ambient) || (environment && program.dependencies.environment)) return true;
-  for (const auto& [material, fields] : materials)
-    if (material == program.material && (fields & program.dependencies.material) != 0) return true;
-  return std::ranges::any_of(
-      lights, [&](LightId light) { return std::ranges::find(program.dependencies.lights, light) != program.dependencies.lights.end(); });
+  if ((fields_of(program.material) & program.dependencies.material) != 0) return true;
+  const std::vector<LightId>& read = program.dependencies.lights;
+  return std::ranges::any_of(lights, [&](LightId light) { return std::ranges::find(read, light) != read.end(); });
 }
 
 StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,

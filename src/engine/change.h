@@ -1,5 +1,5 @@
-// What one edit means for rays and for colours, worked out once per step from the scene delta: the rest of the replay asks
-// nothing else about the edit.
+// What one edit means for rays and for colours, worked out once per step from the scene delta: the rest of the replay
+// asks nothing else about the edit.
 #pragma once
 #include <vector>
 
@@ -16,7 +16,11 @@ struct ColorChange {
   std::vector<ObjectId> reassigned;  // objects that have another material now
   bool ambient = false, environment = false;
 
-  [[nodiscard]] bool empty() const { return materials.empty() && lights.empty() && reassigned.empty() && !ambient && !environment; }
+  [[nodiscard]] bool empty() const {
+    return materials.empty() && lights.empty() && reassigned.empty() && !ambient && !environment;
+  }
+  /// The changed fields of a material.
+  [[nodiscard]] FieldMask fields_of(MaterialId material) const;
   /// Can the change alter what a program with these dependencies, of this material, yields?
   [[nodiscard]] bool reaches(const ColorProgram& program) const;
 };

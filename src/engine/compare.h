@@ -9,7 +9,7 @@ namespace relook {
 
 struct FrameDifference {
   std::uint64_t pixels_compared = 0;
-  std::uint64_t pixels_different = 0;  // at least one channel with other bits
+  std::uint64_t pixels_different = 0;   // at least one channel with other bits
   double max_error = 0, rms_error = 0;  // over all channels; infinite when a difference is not finite
   FrameDifference& operator+=(const FrameDifference& other);
 

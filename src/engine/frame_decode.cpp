@@ -73,9 +73,8 @@ Frame decode_exr(BytesView bytes, std::string_view file) {
     float* first = &frame.pixels[0].r;
     const char* names[] = {"R", "G", "B", "A"};
     for (int channel = 0; channel < 4; ++channel)
-      target.insert(names[channel],
-                    Imf::Slice::Make(Imf::FLOAT, first + channel, window, sizeof(Rgba), sizeof(Rgba) * frame.width, 1, 1,
-                                     channel == 3 ? 1.0 : 0.0));
+      target.insert(names[channel], Imf::Slice::Make(Imf::FLOAT, first + channel, window, sizeof(Rgba),
+                                                     sizeof(Rgba) * frame.width, 1, 1, channel == 3 ? 1.0 : 0.0));
     input.setFrameBuffer(target);
     input.readPixels(window.min.y, window.max.y);
     return frame;

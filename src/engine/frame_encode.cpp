@@ -51,14 +51,13 @@ std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, 
   return bytes;
 }
 
-/// OpenEXR's ZIP: even bytes first, then odd ones; differences of neighbours offset by 128; deflate. Raw when that is not
-/// smaller, which readers tell by the size.
+/// OpenEXR's ZIP: even bytes first, then odd ones; differences of neighbours offset by 128; deflate. Raw when that is
+/// not smaller, which readers tell by the size.
 Bytes zip(const std::vector<unsigned char>& raw) {
   std::vector<unsigned char> split(raw.size());
   const std::size_t first_odd = (raw.size() + 1) / 2;
   for (std::size_t i = 0; i < raw.size(); ++i) split[i / 2 + (i % 2 == 0 ? 0 : first_odd)] = raw[i];
-  for (std::size_t i = split.size(); i-- > 1;)
-    split[i] = static_cast<unsigned char>(split[i] - split[i - 1] + 128);
+  for (std::size_t i = split.size(); i-- > 1;) split[i] = static_cast<unsigned char>(split[i] - split[i - 1] + 128);
 
   uLongf packed_size = compressBound(static_cast<uLong>(split.size()));
   Bytes packed(packed_size);

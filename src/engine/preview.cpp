@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <new>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -18,8 +19,7 @@ std::array<float, 255> srgb_boundaries() {
   std::array<float, 255> boundary{};
   for (std::size_t k = 0; k < boundary.size(); ++k) {
     const double encoded = (static_cast<double>(k) + 0.5) / 255;
-    boundary[k] =
-        static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+    boundary[k] = static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
   }
   return boundary;
 }
@@ -29,6 +29,12 @@ unsigned char srgb_code(const std::array<float, 255>& boundary, float linear) {
   return static_cast<unsigned char>(std::upper_bound(boundary.begin(), boundary.end(), linear) - boundary.begin());
 }
 
+void append(Bytes& out, BytesView data) {
+  const std::size_t start = out.size();
+  out.resize(start + data.size());
+  std::copy(data.begin(), data.end(), out.data() + start);
+}
+
 void append_number(Bytes& out, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::byte>(value >> shift & 0xFF));
 }
@@ -36,62 +42,118 @@ void append_number(Bytes& out, std::uint32_t value) {
 void append_chunk(Bytes& out, std::string_view type, BytesView data) {
   append_number(out, static_cast<std::uint32_t>(data.size()));
   const std::size_t start = out.size();
-  const BytesView name = bytes_of(type);
-  out.insert(out.end(), name.begin(), name.end());
-  out.insert(out.end(), data.begin(), data.end());
+  append(out, bytes_of(type));
+  append(out, data);
   const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(out.data() + start), static_cast<uInt>(out.size() - start));
   append_number(out, static_cast<std::uint32_t>(sum));
 }
 
+constexpr std::uint32_t kBandRows = 64;
+
 /// Rows of 3 bytes a pixel, each led by its filter (1: differences to the left neighbour).
-std::vector<unsigned char> filtered_rows(const Frame& frame) {
+std::vector<unsigned char> filtered_rows(const Frame& frame, std::uint32_t first_row, std::uint32_t last_row) {
   const std::array<float, 255> boundary = srgb_boundaries();
-  const std::size_t row_bytes = 1 + std::size_t{frame.width} * 3;
-  std::vector<unsigned char> rows(row_bytes * frame.height);
-  parallel_for(
-      frame.height,
-      [&](std::size_t y) {
-        unsigned char* out = rows.data() + y * row_bytes;
-        *out++ = 1;
-        std::array<unsigned char, 3> left{};
-        for (std::size_t x = 0; x < frame.width; ++x) {
-          const Rgba& pixel = frame.pixels[y * frame.width + x];
-          const std::array<unsigned char, 3> codes{srgb_code(boundary, pixel.r), srgb_code(boundary, pixel.g),
-                                                   srgb_code(boundary, pixel.b)};
-          for (std::size_t c = 0; c < 3; ++c) *out++ = static_cast<unsigned char>(codes[c] - left[c]);
-          left = codes;
-        }
-      },
-      16);
+  std::vector<unsigned char> rows((1 + std::size_t{frame.width} * 3) * (last_row - first_row));
+  unsigned char* out = rows.data();
+  for (std::uint32_t y = first_row; y < last_row; ++y) {
+    *out++ = 1;
+    std::array<unsigned char, 3> left{};
+    for (std::size_t x = 0; x < frame.width; ++x) {
+      const Rgba& pixel = frame.pixels[std::size_t{y} * frame.width + x];
+      const std::array<unsigned char, 3> codes{srgb_code(boundary, pixel.r), srgb_code(boundary, pixel.g),
+                                               srgb_code(boundary, pixel.b)};
+      for (std::size_t c = 0; c < 3; ++c) *out++ = static_cast<unsigned char>(codes[c] - left[c]);
+      left = codes;
+    }
+  }
   return rows;
+}
+
+/// Deflate blocks that end on a byte and are not the last of their stream.
+Bytes deflate_blocks(std::vector<unsigned char>& rows) {
+  constexpr int kFastest = 1, kRawDeflate = -15, kMemoryLevel = 8;
+  constexpr std::size_t kFlushBytes = 16;
+  Bytes packed(compressBound(static_cast<uLong>(rows.size())) + kFlushBytes);
+  z_stream stream{};
+  const int started = deflateInit2(&stream, kFastest, Z_DEFLATED, kRawDeflate, kMemoryLevel, Z_DEFAULT_STRATEGY);
+  if (started == Z_MEM_ERROR) throw std::bad_alloc();
+  require(started == Z_OK, "zlib starts with these settings");
+  stream.next_in = rows.data();
+  stream.avail_in = static_cast<uInt>(rows.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  const int result = deflate(&stream, Z_FULL_FLUSH);
+  const std::size_t packed_size = packed.size() - stream.avail_out;
+  const bool is_whole = result == Z_OK && stream.avail_in == 0 && stream.avail_out > 0;
+  deflateEnd(&stream);
+  require(is_whole, "deflate into a buffer of its own bound succeeds");
+  return {packed.data(), packed.data() + packed_size};
 }
 
 }  // namespace
 
-Bytes encode_png(const Frame& frame) {
-  constexpr int kFastest = 1;
-  const std::vector<unsigned char> rows = filtered_rows(frame);
-  uLongf packed_size = compressBound(static_cast<uLong>(rows.size()));
-  Bytes packed(packed_size);
-  const int result = compress2(reinterpret_cast<Bytef*>(packed.data()), &packed_size, rows.data(),
-                               static_cast<uLong>(rows.size()), kFastest);
-  if (result == Z_MEM_ERROR) throw std::bad_alloc();
-  require(result == Z_OK, "deflate into a buffer of its own bound succeeds");
-  packed.resize(packed_size);
+PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height)
+    : width_(width), height_(height), bands_((height + kBandRows - 1) / kBandRows) {}
+
+std::size_t PreviewEncoder::band_bytes(std::size_t band) const {
+  const std::size_t first_row = band * kBandRows;
+  return (1 + std::size_t{width_} * 3) * (std::min<std::size_t>(first_row + kBandRows, height_) - first_row);
+}
+
+void PreviewEncoder::compress(const Frame& frame, std::span<const std::uint32_t> bands) {
+  require(frame.width == width_ && frame.height == height_, "a preview encoder keeps one size");
+  parallel_for(bands.size(), [&](std::size_t i) {
+    const std::uint32_t first_row = bands[i] * kBandRows;
+    std::vector<unsigned char> rows = filtered_rows(frame, first_row, std::min(first_row + kBandRows, height_));
+    const uLong checksum = adler32(1, rows.data(), static_cast<uInt>(rows.size()));
+    bands_[bands[i]] = {deflate_blocks(rows), static_cast<std::uint32_t>(checksum)};
+  });
+}
+
+void PreviewEncoder::update(const Frame& frame) {
+  std::vector<std::uint32_t> all(bands_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  compress(frame, all);
+}
+
+void PreviewEncoder::update(const Frame& frame, std::span<const std::uint32_t> changed_pixels) {
+  std::vector<bool> touched(bands_.size());
+  for (const std::uint32_t pixel : changed_pixels) touched[pixel / width_ / kBandRows] = true;
+  std::vector<std::uint32_t> bands;
+  for (std::uint32_t band = 0; band < touched.size(); ++band)
+    if (touched[band]) bands.push_back(band);
+  compress(frame, bands);
+}
+
+Bytes PreviewEncoder::png() const {
+  Bytes stream;
+  for (const int value : {0x78, 0x01}) stream.push_back(static_cast<std::byte>(value));  // zlib: 32 KB window, fastest
+  uLong checksum = 1;
+  for (std::size_t band = 0; band < bands_.size(); ++band) {
+    append(stream, bands_[band].deflated);
+    checksum = adler32_combine(checksum, bands_[band].checksum, static_cast<z_off_t>(band_bytes(band)));
+  }
+  for (const int value : {0x03, 0x00}) stream.push_back(static_cast<std::byte>(value));  // an empty last block
+  append_number(stream, static_cast<std::uint32_t>(checksum));
 
   Bytes png;
-  const BytesView signature = bytes_of("\x89PNG\r\n\x1A\n");
-  png.insert(png.end(), signature.begin(), signature.end());
+  append(png, bytes_of("\x89PNG\r\n\x1A\n"));
   Bytes header;
-  append_number(header, frame.width);
-  append_number(header, frame.height);
+  append_number(header, width_);
+  append_number(header, height_);
   for (const int value : {8, 2, 0, 0, 0}) header.push_back(static_cast<std::byte>(value));  // 8 bits, RGB
   append_chunk(png, "IHDR", header);
   constexpr std::byte kPerceptual{0};
   append_chunk(png, "sRGB", BytesView(&kPerceptual, 1));
-  append_chunk(png, "IDAT", packed);
+  append_chunk(png, "IDAT", stream);
   append_chunk(png, "IEND", {});
   return png;
+}
+
+Bytes encode_png(const Frame& frame) {
+  PreviewEncoder encoder(frame.width, frame.height);
+  encoder.update(frame);
+  return encoder.png();
 }
 
 }  // namespace relook

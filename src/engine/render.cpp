@@ -27,7 +27,7 @@ struct TileRecord {
 class TileRenderer {
  public:
   TileRenderer(const GrowScene& grow, const ViewOptions& view, ProgramTable& programs)
-      : grow_(grow), view_(view), programs_(programs) {}
+      : grow_(grow), view_(view), primary_(grow.scene.scene().camera, view), programs_(programs) {}
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
   void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
@@ -39,8 +39,7 @@ class TileRenderer {
       block_.clear();
       roots_.clear();
       for (std::uint32_t sample = first; sample < last; ++sample)
-        roots_.push_back(trace_tree(grow_, primary_ray(grow_.scene.scene().camera, view_, rect, sample), sample, block_,
-                                    counters));
+        roots_.push_back(trace_tree(grow_, primary_.ray(rect, sample), sample, block_, counters));
       shade(grow_.scene, block_, roots_, programs_, std::span(colors).subspan(first, last - first));
       if (record != nullptr) keep(*record);
     }
@@ -58,6 +57,7 @@ class TileRenderer {
 
   const GrowScene& grow_;
   const ViewOptions& view_;
+  PrimaryRays primary_;
   ProgramTable& programs_;
   TreeBlock block_;
   std::vector<std::uint32_t> roots_, words_;

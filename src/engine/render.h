@@ -1,5 +1,5 @@
-// The full render: trace ray trees, build their colour trees, evaluate them, tile by tile. Preprocessing is the same with
-// the ray paths interned and the ray trees kept.
+// The full render: trace ray trees, build their colour trees, evaluate them, tile by tile. Preprocessing is the same
+// with the ray paths interned and the ray trees kept.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,12 +14,13 @@ namespace relook {
 using Progress = std::function<void(double)>;
 
 struct RenderStats {
-  Counters counters;       // ray_updates: rays traced; shadow_updates: shadow segments traced
+  Counters counters;                             // ray_updates: rays traced; shadow_updates: shadow segments traced
   double build_seconds = 0, render_seconds = 0;  // acceleration structures; everything else
 };
 
 /// The frame of `scene` as it is now.
-[[nodiscard]] Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress = {});
+[[nodiscard]] Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats,
+                           const Progress& progress = {});
 /// The same frame, bit for bit, with paths, ray trees and sample colours kept. Ids do not depend on the thread count.
 [[nodiscard]] Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats,
                                const Progress& progress = {});

@@ -73,13 +73,19 @@ struct Replayer::Impl {
   Tracer::TopLevel level;
   bool level_is_current = false;
 
-  Impl(SceneState s, Image i) : state(std::move(s)), image(std::move(i)), rays(state.scene()), lights(state.scene().light_order), compact_paths(image.paths.size()) {
+  Impl(SceneState s, Image i)
+      : state(std::move(s)),
+        image(std::move(i)),
+        rays(state.scene()),
+        lights(state.scene().light_order),
+        compact_paths(image.paths.size()) {
     segments = count_segments();
   }
 
   [[nodiscard]] std::uint64_t count_segments() const {
     std::vector<std::uint64_t> of_path(image.paths.size());
-    for (std::uint32_t p = 0; p < of_path.size(); ++p) of_path[p] = segments_of(image.paths.words(PathId(p)), lights.size());
+    for (std::uint32_t p = 0; p < of_path.size(); ++p)
+      of_path[p] = segments_of(image.paths.words(PathId(p)), lights.size());
     std::uint64_t sum = 0;
     for (const TileTrees& tile : image.trees)
       for (PathId path : tile.paths) sum += of_path[path.index()];
@@ -120,13 +126,22 @@ struct Replayer::Impl {
   }
 
   [[nodiscard]] bool depends(std::span<const std::uint32_t> path, const ColorChange& colors) {
-    const auto is_reassigned = [&](ObjectId id) { return std::ranges::find(colors.reassigned, id) != colors.reassigned.end(); };
-    if (!colors.reassigned.empty())
-      for (ObjectId id : objects_of(path))
-        if (is_reassigned(id)) return true;
+    const Scene& scene = state.scene();
+    if (!colors.lights.empty() || colors.ambient || colors.environment) return reaches_any_program(path, colors);
+    const std::vector<ObjectId> objects = objects_of(path);
+    const auto is_reassigned = [&](ObjectId id) {
+      return std::ranges::find(colors.reassigned, id) != colors.reassigned.end();
+    };
+    if (!colors.reassigned.empty() && std::ranges::any_of(objects, is_reassigned)) return true;
+    const auto has_changed_material = [&](ObjectId id) { return colors.fields_of(scene.object(id).material) != 0; };
+    return std::ranges::any_of(objects, has_changed_material) && reaches_any_program(path, colors);
+  }
+
+  [[nodiscard]] bool reaches_any_program(std::span<const std::uint32_t> path, const ColorChange& colors) {
     std::vector<NodeKey> keys;
     append_keys(rays, path, lights, keys);
-    return std::ranges::any_of(keys, [&](const NodeKey& key) { return colors.reaches(programs.get(state.scene(), key)); });
+    return std::ranges::any_of(keys,
+                               [&](const NodeKey& key) { return colors.reaches(programs.get(state.scene(), key)); });
   }
 
   /// Every object of a path, filters included.
@@ -145,9 +160,10 @@ struct Replayer::Impl {
   [[nodiscard]] std::vector<PathTask> find_tasks(const StepChange& change) {
     std::vector<PathTask> tasks(image.paths.size());
     constexpr std::size_t kGrain = 256;
-    parallel_for(tasks.size(), [&](std::size_t p) {
-      tasks[p] = task_of(image.paths.words(PathId(static_cast<std::uint32_t>(p))), change);
-    }, kGrain);
+    parallel_for(
+        tasks.size(),
+        [&](std::size_t p) { tasks[p] = task_of(image.paths.words(PathId(static_cast<std::uint32_t>(p))), change); },
+        kGrain);
     return tasks;
   }
 
@@ -156,6 +172,7 @@ struct Replayer::Impl {
     const TileRect rect = tile_rect(tile, frame.width, frame.height);
     const TileTrees& trees = image.trees[tile];
     const GrowScene grow{rays, &level, image.view.max_depth};
+    const PrimaryRays primaries(state.scene().camera, image.view);
     TreeBlock block;
     std::vector<std::uint32_t> roots, chunk;
     const auto flush = [&] {
@@ -170,8 +187,9 @@ struct Replayer::Impl {
     for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
       const PathTask task = tasks[trees.paths[sample].index()];
       if (!task.update && !task.shade) continue;
-      const SpawnedRay primary = primary_ray(state.scene().camera, image.view, rect, sample);
-      const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), lights.size()), trees.hits_of(sample).data()};
+      const SpawnedRay primary = primaries.ray(rect, sample);
+      const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), lights.size()),
+                              trees.hits_of(sample).data()};
       const TreeBlock::Mark mark = block.mark();
       bool changed = false;
       std::uint32_t root = 0;
@@ -210,7 +228,8 @@ struct Replayer::Impl {
     for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
       std::span<const Hit> hits = trees.hits_of(sample);
       if (k < update.packed.size() && update.packed[k] == sample) {
-        next.paths[sample] = image.paths.intern(std::span(update.words).subspan(update.first_word[k], update.first_word[k + 1] - update.first_word[k]));
+        next.paths[sample] = image.paths.intern(
+            std::span(update.words).subspan(update.first_word[k], update.first_word[k + 1] - update.first_word[k]));
         hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
         ++k;
       }
@@ -273,7 +292,8 @@ struct Replayer::Impl {
     result.classification = classify(state.scene(), delta);
     StepChange change = find_change(rays, state.scene(), delta, lights);
     rays.update(state.scene(), delta);
-    if (change.any_moved || change.any_shadows || change.any_respawns || !delta.objects.empty()) level_is_current = false;
+    if (change.any_moved || change.any_shadows || change.any_respawns || !delta.objects.empty())
+      level_is_current = false;
     forget_programs(change);
     watch.lap(result.seconds.classify);
 

@@ -16,7 +16,7 @@ namespace relook {
 struct StepResult {
   Classification classification;
   Counters counters;
-  Seconds seconds;                        // classify .. evaluate; write and total are the caller's
+  Seconds seconds;                            // classify .. evaluate; write and total are the caller's
   std::vector<std::uint32_t> changed_pixels;  // indices into frame.pixels, increasing
 };
 

@@ -47,9 +47,7 @@ Json resident_json(const Resident& resident) {
 }
 
 /// Residency is a later feature: nothing is ever evicted.
-Json no_residency_changes() {
-  return {{"ray_trees", 0}, {"color_trees", 0}, {"tunnels", 0}, {"total", 0}};
-}
+Json no_residency_changes() { return {{"ray_trees", 0}, {"color_trees", 0}, {"tunnels", 0}, {"total", 0}}; }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
   if (!verify) return nullptr;

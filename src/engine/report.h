@@ -27,7 +27,7 @@ struct VerifyResult {
 };
 
 struct StepReport {
-  std::uint32_t step = 0;                   // 0: before any edit
+  std::uint32_t step = 0;  // 0: before any edit
   std::string name;
   ChangeClass change = ChangeClass::base;
   std::vector<std::string> reasons;
@@ -63,7 +63,7 @@ struct RunReport {
   std::size_t threads = 0;
   std::optional<double> full_render_seconds;
   CacheSizes cache;
-  bool interrupted = false;           // ended by a signal: later steps are missing
+  bool interrupted = false;  // ended by a signal: later steps are missing
   std::vector<StepReport> steps;
 };
 

@@ -32,17 +32,8 @@ TileRect tile_rect(std::size_t tile, std::uint32_t width, std::uint32_t height) 
   return {x, y, std::min(x + kTileSize, width), std::min(y + kTileSize, height)};
 }
 
-SpawnedRay primary_ray(const Camera& camera, const ViewOptions& view, const TileRect& rect, std::uint32_t sample) {
-  const std::uint32_t pixel = sample / view.samples, width = rect.x1 - rect.x0;
-  const Uv in_pixel = position_in_pixel(sample % view.samples, view.samples);
-  const CameraRay ray = camera_ray(camera, static_cast<float>(rect.x0 + pixel % width) + in_pixel.x,
-                                   static_cast<float>(rect.y0 + pixel / width) + in_pixel.y);
-  SpawnedRay primary;
-  primary.origin = ray.origin;
-  primary.direction = ray.direction;
-  primary.cone_width = ray.width;
-  primary.cone_spread = ray.spread;
-  return primary;
+PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view) : camera_(camera) {
+  for (std::uint32_t k = 0; k < view.samples; ++k) in_pixel_.push_back(position_in_pixel(k, view.samples));
 }
 
 Rgba pixel_color(const Rgba* samples, std::uint32_t count) {

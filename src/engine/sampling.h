@@ -1,5 +1,7 @@
 // Samples of a tile: which pixel, where in it, and the primary ray. Fixed positions, no randomness.
 #pragma once
+#include <vector>
+
 #include "engine/image.h"
 #include "scene/camera.h"
 #include "trace/tree_block.h"
@@ -15,9 +17,25 @@ namespace relook {
   const std::uint32_t width = rect.x1 - rect.x0;
   return std::size_t{rect.y0 + pixel / width} * frame_width + rect.x0 + pixel % width;
 }
-/// The primary ray of sample `sample` of a tile.
-[[nodiscard]] SpawnedRay primary_ray(const Camera& camera, const ViewOptions& view, const TileRect& rect,
-                                     std::uint32_t sample);
+/// The primary rays of an image's samples.
+class PrimaryRays {
+ public:
+  PrimaryRays(const Camera& camera, const ViewOptions& view);
+  /// That of sample `sample` of a tile.
+  [[nodiscard]] SpawnedRay ray(const TileRect& rect, std::uint32_t sample) const {
+    const auto samples = static_cast<std::uint32_t>(in_pixel_.size());
+    const std::uint32_t pixel = sample / samples, width = rect.x1 - rect.x0;
+    const Uv& at = in_pixel_[sample % samples];
+    const CameraRay camera_ray = relook::camera_ray(camera_, static_cast<float>(rect.x0 + pixel % width) + at.x,
+                                                    static_cast<float>(rect.y0 + pixel / width) + at.y);
+    return {camera_ray.origin, camera_ray.direction, camera_ray.width, camera_ray.spread};
+  }
+
+ private:
+  const Camera& camera_;
+  std::vector<Uv> in_pixel_;  // positions of a pixel's samples, in [0, 1)
+};
+
 /// A pixel from its samples: their sum in order, divided by their number.
 [[nodiscard]] Rgba pixel_color(const Rgba* samples, std::uint32_t count);
 

@@ -273,7 +273,7 @@ void check_texture_entity(const CompileContext& context, Section section, const 
       const int wrap = value.value(key, 10497);
       if (wrap != 10497 && wrap != 33071 && wrap != 33648)
         throw LookError(context.file, pointer + "/" + key,
-                        std::to_string(wrap) + " is none of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
+                        std::to_string(wrap) + " is not one of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
     }
   if (section != Section::images) return;
   const std::string& content = value["extras"]["relook"].value("content", "");

@@ -225,30 +225,48 @@ void check_total(const GltfModel& model, std::string_view file) {
                          " MB are allowed for this file");
 }
 
+/// Primitives left out for one reason: one warning for all.
+struct LeftOut {
+  std::string first;
+  std::size_t count = 0;
+
+  void add(const std::string& pointer) {
+    if (count++ == 0) first = pointer;
+  }
+  void warn(std::string_view why, std::vector<std::string>& warnings) const {
+    if (count == 0) return;
+    const std::string others = count == 1 ? "" : " and " + std::to_string(count - 1) + " more";
+    warnings.push_back(first + others + ": " + std::string(why));
+  }
+};
+
 }  // namespace
 
 std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
                                              std::vector<std::string>& warnings) {
   check_total(model, file);
   std::vector<std::vector<Mesh>> meshes;
+  LeftOut not_triangles, without_positions, empty;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {
     auto& primitives = meshes.emplace_back();
     for (std::size_t p = 0; p < model.meshes[m].size(); ++p) {
       const GltfPrimitive& primitive = model.meshes[m][p];
       const std::string pointer = "/meshes/" + std::to_string(m) + "/primitives/" + std::to_string(p);
       if (!makes_triangles(primitive)) {
-        warnings.push_back(pointer + (primitive.mode < 4 ? ": points and lines are ignored"
-                                                         : ": a primitive without positions is ignored"));
+        (primitive.mode < 4 ? not_triangles : without_positions).add(pointer);
         continue;
       }
       Mesh mesh = decode_primitive({model, primitive, file, pointer});
       mesh.primitive = static_cast<std::uint32_t>(p);
       if (mesh.triangles.empty())
-        warnings.push_back(pointer + ": a primitive without triangles is ignored");
+        empty.add(pointer);
       else
         primitives.push_back(std::move(mesh));
     }
   }
+  not_triangles.warn("points and lines are ignored", warnings);
+  without_positions.warn("a primitive without positions is ignored", warnings);
+  empty.warn("a primitive without triangles is ignored", warnings);
   return meshes;
 }
 

@@ -33,6 +33,19 @@ class Crc {
   std::array<std::uint32_t, 256> table_;
 };
 
+/// What the header chunk of a PNG may say (PNG specification, 11.2.2).
+bool is_png_header(BytesView data) {
+  if (data.size() != 13) return false;
+  const auto byte = [&](std::size_t i) { return std::to_integer<unsigned>(data[i]); };
+  const std::uint32_t width = big_endian(data, 0, 4), height = big_endian(data, 4, 4);
+  const unsigned depth = byte(8), color = byte(9);
+  const bool is_grey = color == 0 && (depth == 1 || depth == 2 || depth == 4 || depth == 8 || depth == 16);
+  const bool is_palette = color == 3 && (depth == 1 || depth == 2 || depth == 4 || depth == 8);
+  const bool is_direct = (color == 2 || color == 4 || color == 6) && (depth == 8 || depth == 16);
+  return width - 1 < INT32_MAX && height - 1 < INT32_MAX && (is_grey || is_palette || is_direct) && byte(10) == 0 &&
+         byte(11) == 0 && byte(12) <= 1;
+}
+
 constexpr std::uint8_t kStartOfImage = 0xD8, kEndOfImage = 0xD9, kStartOfScan = 0xDA, kFill = 0xFF;
 
 bool is_restart(std::uint8_t marker) { return marker >= 0xD0 && marker <= 0xD7; }
@@ -77,6 +90,7 @@ ImageStream png_pixels(BytesView png) {
     if (crc.of(chunk.subspan(4, length + 4)) != big_endian(chunk, length + 8, 4))
       return {{}, "the PNG is damaged: wrong CRC of the chunk" + at(offset)};
     if ((type == "IHDR") != (offset == kSignatureBytes)) return {{}, "the PNG does not start with one header"};
+    if (type == "IHDR" && !is_png_header(chunk.subspan(8, length))) return {{}, "the header of the PNG is invalid"};
     if (std::ranges::find(kKept, type) != kKept.end())
       pixels.bytes.insert(pixels.bytes.end(), chunk.begin(), chunk.end());
     else if (type[0] >= 'A' && type[0] <= 'Z')

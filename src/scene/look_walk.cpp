@@ -167,7 +167,7 @@ class Checker {
     const std::string near = nearest_name(word, field.choices);
     std::string known;
     for (std::string_view option : field.choices) known += (known.empty() ? "" : ", ") + std::string(option);
-    fail(place, "\"" + word + "\" is none of " + known + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+    fail(place, "\"" + word + "\" is not one of " + known + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
   }
 
   void name(Target target, const Json& value, const Place& place) const {

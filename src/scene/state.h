@@ -42,8 +42,8 @@ class SceneState {
   /// For edit/ alone: the document to patch in place before recompile().
   [[nodiscard]] LookDocument& editable_document() { return document_; }
 
-  /// Compiles what was touched. Throws InputError{file, pointer, ...} and leaves the scene as it was (the document is the
-  /// caller's to restore). An edit that moves or hides the active camera is an error.
+  /// Compiles what was touched. Throws InputError{file, pointer, ...} and leaves the scene as it was (the document is
+  /// the caller's to restore). An edit that moves or hides the active camera is an error.
   SceneDelta recompile(const std::vector<TouchedEntity>& touched, std::string_view file);
 
   /// For a rehearsal of edits that were undone again: drops the slots they left behind. Requires them to be dead.

@@ -16,7 +16,8 @@ const ByteTable& linear_of_srgb() {
     ByteTable values{};
     for (int i = 0; i < 256; ++i) {
       const double s = i / 255.0;
-      values[static_cast<std::size_t>(i)] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+      values[static_cast<std::size_t>(i)] =
+          static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
     }
     return values;
   }();

@@ -1,5 +1,7 @@
 #include "trace/grow.h"
 
+#include <cmath>
+
 #include "base/error.h"
 
 namespace relook {
@@ -225,14 +227,11 @@ class Updater {
     TreeBlock& block = grower_.block();
     const SpawnedRay ray = block.nodes[index].ray;
     ++counters_.ray_tests;
-    // The stored distance is known up to rounding: nearer than the band is in front, in the band the whole scene decides.
-    constexpr float kBand = 1e-4F;
     Ray segment{ray.origin, ray.direction};
     float slack = 0;
     if (!node.is_miss()) {
-      const float length = block.nodes[index].length;
-      slack = kBand * length + 4 * block.nodes[index].point.offset;
-      segment.t_max = length + slack;
+      slack = distance_slack(block.nodes[index]);
+      segment.t_max = block.nodes[index].length + slack;
     }
     const Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
@@ -243,6 +242,17 @@ class Updater {
       return regrow(index, node, nearest);
     }
     return regrow(index, node, meeting);
+  }
+
+  /// The stored hit's distance is known up to rounding, the more so the flatter the ray meets its triangle. What the
+  /// selection has nearer than this band is in front; within it the whole scene decides.
+  [[nodiscard]] float distance_slack(const RayNode& node) const {
+    constexpr float kUlps = 0x1p-17F;  // 128 units in the last place
+    const Point& o = node.ray.origin;
+    const float coordinates = std::fabs(o.x) + std::fabs(o.y) + std::fabs(o.z);
+    const float cosine = std::fmax(-node.ray.direction.dot(node.point.geometric), 1e-4F);
+    const float condition = grower_.grow().scene.object(node.object).condition;
+    return (kUlps * (node.length + coordinates) + 8 * node.point.offset) * condition / cosine;
   }
 
   bool regrow(std::uint32_t index, const PathNode& node, const Meeting& meeting) {

@@ -1,5 +1,5 @@
-// Grows ray trees: by tracing against the whole scene, from stored paths and hits, or by updating what is stored after a
-// change of the scene (paper 2.2): all three give the same nodes for the same scene.
+// Grows ray trees: by tracing against the whole scene, from stored paths and hits, or by updating what is stored after
+// a change of the scene (paper 2.2): all three give the same nodes for the same scene.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -41,24 +41,24 @@ std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std:
 /// What changed between the scene of the stored trees and the scene as it is now, in terms of rays.
 struct RayChange {
   enum Flag : std::uint8_t {
-    moved = 1,      // hits on the object are not valid any more; it may be met elsewhere
-    shadows = 2,    // it blocks or filters light differently (moved objects too)
-    respawns = 4,   // its hits stay, but other rays may leave from them
+    moved = 1,     // hits on the object are not valid any more; it may be met elsewhere
+    shadows = 2,   // it blocks or filters light differently (moved objects too)
+    respawns = 4,  // its hits stay, but other rays may leave from them
   };
-  std::vector<std::uint8_t> objects;                // flags by ObjectId
-  std::vector<RayObject> before;                    // values before the change of flagged objects
-  std::vector<std::uint32_t> before_index;          // by ObjectId, into `before`
-  Tracer::TopLevel moved_after;                     // moved objects where they are now
-  Tracer::TopLevel shadows_before, shadows_after;   // objects with flag `shadows`
-  std::vector<LightId> old_lights;                  // light order of the stored trees
-  std::vector<std::uint32_t> old_light_index;       // by place in the new light order; kNoNode: new or moved light
-  bool lights_changed = false;                      // any light added, deleted, moved or reordered
+  std::vector<std::uint8_t> objects;               // flags by ObjectId
+  std::vector<RayObject> before;                   // values before the change of flagged objects
+  std::vector<std::uint32_t> before_index;         // by ObjectId, into `before`
+  Tracer::TopLevel moved_after;                    // moved objects where they are now
+  Tracer::TopLevel shadows_before, shadows_after;  // objects with flag `shadows`
+  std::vector<LightId> old_lights;                 // light order of the stored trees
+  std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
+  bool lights_changed = false;                     // any light added, deleted, moved or reordered
 
   [[nodiscard]] std::uint8_t flags(ObjectId id) const { return objects[id.index()]; }
 };
 
-/// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `changed` is set
-/// to true if any node, hit or shadow state differs from what is stored, or a light that reaches a node has moved.
+/// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `changed` is
+/// set to true if any node, hit or shadow state differs from what is stored, or a light that reaches a node has moved.
 std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const SpawnedRay& primary,
                           std::uint32_t sample, StoredTree stored, TreeBlock& block, GrowCounters& counters,
                           bool& changed);

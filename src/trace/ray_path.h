@@ -25,9 +25,10 @@ enum class ShadowState : std::uint8_t {
 
 /// Interned paths. A path is a sequence of words, nodes in preorder, children in the order of Branch:
 ///   node     object index (kMissWord: the ray left the scene)
-///            branch mask of spawned rays (bits 0..3) | inside flag (bit 4) | Fresnel-cut mask (bits 8..11)   [hits only]
-///   lights   two bits per living light in the scene's light order, packed 16 to a word                      [hits only]
-///   filters  for every `filtered` light, in order: count, then that many object indices                     [hits only]
+///            branch mask of spawned rays (bits 0..3) | inside flag (bit 4) | Fresnel-cut mask (bits 8..11)   [hits
+///            only]
+///   lights   two bits per living light in the scene's light order, packed 16 to a word                      [hits
+///   only] filters  for every `filtered` light, in order: count, then that many object indices [hits only]
 /// Invariant: ids are dense, in order of first insertion; equal sequences have equal ids.
 class PathTable {
  public:

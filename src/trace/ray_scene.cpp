@@ -1,6 +1,7 @@
 #include "trace/ray_scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene/displacement.h"
 
@@ -17,6 +18,18 @@ Imath::M33f normal_matrix(const Transform& m) {
 
 float determinant(const Transform& m, const Imath::M33f& cofactors) {
   return m[0][0] * cofactors[0][0] + m[0][1] * cofactors[0][1] + m[0][2] * cofactors[0][2];
+}
+
+/// |M| |M^-1| / 3 in the Frobenius norm; the inverse is the transposed cofactors over the determinant.
+float condition_number(const Transform& m, const Imath::M33f& cofactors, float det) {
+  double linear = 0, inverse = 0;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) {
+      linear += double{m[row][column]} * m[row][column];
+      inverse += double{cofactors[row][column]} * cofactors[row][column];
+    }
+  const double condition = std::sqrt(linear) * std::sqrt(inverse) / (3 * std::fabs(double{det}));
+  return condition < 1e6 ? static_cast<float>(std::max(condition, 1.0)) : 1e6F;  // singular ones too
 }
 
 }  // namespace
@@ -57,7 +70,9 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
                             : std::make_shared<const Material>(material);
   ray_object.to_world = object.to_world;
   ray_object.normal_to_world = normal_matrix(object.to_world);
-  ray_object.flipped = determinant(object.to_world, ray_object.normal_to_world) < 0;
+  const float det = determinant(object.to_world, ray_object.normal_to_world);
+  ray_object.flipped = det < 0;
+  ray_object.condition = condition_number(object.to_world, ray_object.normal_to_world, det);
   ray_object.alive = object.alive;
   ray_object.key = object.key;
   ray_object.optics = surface_optics(material, *ray_object.mesh);

@@ -1,5 +1,5 @@
-// The scene frozen for rays: per object what intersection, surface points and spawning need, derived from Scene. A change
-// of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
+// The scene frozen for rays: per object what intersection, surface points and spawning need, derived from Scene. A
+// change of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
 #pragma once
 #include <map>
 #include <memory>
@@ -12,13 +12,14 @@ namespace relook {
 
 /// One object, ready for rays.
 struct RayObject {
-  std::shared_ptr<const Mesh> mesh;  // displaced, if the object is
+  std::shared_ptr<const Mesh> mesh;          // displaced, if the object is
   std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
   Transform to_world;
-  Imath::M33f normal_to_world;       // inverse transpose of the linear part, not normalised
-  bool flipped = false;              // negative determinant: counter-clockwise triangles are back faces
+  Imath::M33f normal_to_world;  // inverse transpose of the linear part, not normalised
+  float condition = 1;          // of the linear part: how much it stretches rounding errors, at least 1
+  bool flipped = false;         // negative determinant: counter-clockwise triangles are back faces
   bool alive = false;
-  std::uint64_t key = 0;             // orders coincident hits
+  std::uint64_t key = 0;  // orders coincident hits
   SurfaceOptics optics;
 };
 
@@ -41,7 +42,7 @@ class RayScene {
   [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object) const;
 
   const Scene* scene_ = nullptr;
-  std::vector<RayObject> objects_;  // by ObjectId
+  std::vector<RayObject> objects_;                          // by ObjectId
   std::vector<std::shared_ptr<const Material>> materials_;  // by MaterialId, shared by their objects
 };
 

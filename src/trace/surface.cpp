@@ -15,7 +15,7 @@ struct Weights {
 Weights weights(const Hit& hit) { return {1.0F - hit.u - hit.v, hit.u, hit.v}; }
 
 template <class T>
-T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& triangle, const Hit& hit) {
+inline T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& triangle, const Hit& hit) {
   const auto [w0, w1, w2] = weights(hit);
   return values[triangle[0]] * w0 + values[triangle[1]] * w1 + values[triangle[2]] * w2;
 }
@@ -36,11 +36,11 @@ Direction unit_or(const Direction& v, const Direction& otherwise) {
   return length2 > 1e-30F && length2 < 1e30F ? v / std::sqrt(length2) : otherwise;
 }
 
-/// Scaled by its largest component first, so that tiny and huge triangles keep their normals.
-Normal unit_normal(Normal n) {
-  const float largest = std::max({std::fabs(n.x), std::fabs(n.y), std::fabs(n.z)});
-  if (!(largest > 0)) return Normal(0, 0, 1);
-  return unit_or(n / largest, Normal(0, 0, 1));
+/// Scaled so that its largest component is 1: products of tiny or huge vectors stay in range. (0, 0, 1) for a zero
+/// vector.
+Direction scaled(const Direction& v) {
+  const float largest = std::max(std::max(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
+  return largest > 0 ? v * (1.0F / largest) : Direction(0, 0, 1);
 }
 
 /// Largest magnitude that is added up on the way from object space to a world coordinate.
@@ -92,7 +92,8 @@ Point vertex_coordinates(const Mesh& mesh, const TextureSlot& slot, Mapping mapp
 
 Uv transformed(const TextureSlot& slot, const Point& p) {
   // KHR_texture_transform: scale, then rotate counter-clockwise, then move.
-  const float c = portable_sin_turns(slot.rotation * 0.15915494F + 0.25F), s = portable_sin_turns(slot.rotation * 0.15915494F);
+  const float c = portable_sin_turns(slot.rotation * 0.15915494F + 0.25F),
+              s = portable_sin_turns(slot.rotation * 0.15915494F);
   const float x = p.x * slot.scale.x, y = p.y * slot.scale.y;
   return Uv(c * x + s * y + slot.offset.x, -s * x + c * y + slot.offset.y);
 }
@@ -108,15 +109,14 @@ SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction di
   point.offset = offset_of(object, triangle);
   const Point& a = mesh.positions[triangle[0]];
   const Normal cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
-  Normal front = unit_normal(unit_normal(cross) * object.normal_to_world);
+  Normal front = unit_or(scaled(scaled(cross) * object.normal_to_world), Normal(0, 0, 1));
   if (object.flipped) front = -front;
   point.inside = front.dot(direction) > 0;
   point.geometric = point.inside ? -front : front;
   point.shading = point.geometric;
   if (!mesh.normals.empty()) {
     const Normal smooth = interpolate(mesh.normals, triangle, hit) * object.normal_to_world;
-    const float largest = std::max({std::fabs(smooth.x), std::fabs(smooth.y), std::fabs(smooth.z)});
-    if (largest > 0) point.shading = unit_or(smooth / largest, point.geometric);
+    point.shading = unit_or(scaled(smooth), point.geometric);
     if (point.shading.dot(point.geometric) < 0) point.shading = -point.shading;
   }
   return point;
@@ -156,7 +156,8 @@ Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float 
   return sample(*slot.pyramid, transformed(slot, at.position), level, slot.wrap_s, slot.wrap_t, slot.nearest);
 }
 
-TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const SurfacePoint& point, const TextureSlot& slot) {
+TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const SurfacePoint& point,
+                           const TextureSlot& slot) {
   const Mesh& mesh = *object.mesh;
   const auto& triangle = mesh.triangles[hit.primitive];
   Direction tangent;
@@ -179,9 +180,8 @@ TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const Surfac
   }
   if (object.flipped) handedness = -handedness;
   const Normal front = point.inside ? -point.shading : point.shading;
-  const float largest = std::max({std::fabs(tangent.x), std::fabs(tangent.y), std::fabs(tangent.z)});
-  if (!(largest > 0)) return {};
-  tangent = tangent / largest;
+  if (!(tangent.dot(tangent) > 0)) return {};
+  tangent = scaled(tangent);
   tangent = unit_or(tangent - front * front.dot(tangent), Direction(0, 0, 0));
   return {tangent, front.cross(tangent) * handedness};
 }

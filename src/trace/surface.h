@@ -12,8 +12,8 @@ struct SurfacePoint {
   Point local{0, 0, 0};       // object space
   Normal geometric{0, 0, 1};  // unit, turned against the incoming direction
   Normal shading{0, 0, 1};    // unit, interpolated, on the side of `geometric`; no normal map yet
-  bool inside = false;  // the back of the triangle was met
-  float offset = 0;  // metres along `geometric` that clear the surface of rounding errors
+  bool inside = false;        // the back of the triangle was met
+  float offset = 0;           // metres along `geometric` that clear the surface of rounding errors
 };
 
 /// `direction`: unit, the way the ray travels.
@@ -28,11 +28,12 @@ struct TextureCoordinates {
 [[nodiscard]] TextureCoordinates texture_coordinates(const RayObject& object, const Hit& hit, const Point& local,
                                                      const TextureSlot& slot);
 
-/// The value of a texture slot. `footprint`: ray-cone width over the cosine of incidence, metres. Requires kind != none.
+/// The value of a texture slot. `footprint`: ray-cone width over the cosine of incidence, metres. Requires kind !=
+/// none.
 [[nodiscard]] Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint);
 
-/// The axes of a normal map at a hit (glTF 3.9.3), world space, for the front of the surface: unit vectors, or zero where
-/// the mesh gives none.
+/// The axes of a normal map at a hit (glTF 3.9.3), world space, for the front of the surface: unit vectors, or zero
+/// where the mesh gives none.
 struct TangentFrame {
   Direction tangent{0, 0, 0}, bitangent{0, 0, 0};
 };

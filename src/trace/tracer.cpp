@@ -36,23 +36,27 @@ struct Query
     : RTCIntersectContext {
 #endif
   const std::vector<Tracer::Placed>* placed = nullptr;
-  Meeting nearest;                            // intersect()
+  const Ray* ray = nullptr;                    // intersect(): unit direction
+  Meeting nearest;                             // intersect()
   std::vector<Crossing>* crossings = nullptr;  // passes()
 };
 
-Query make_query(const std::vector<Tracer::Placed>& placed) {
-  Query query;
+void start(Query& query, const std::vector<Tracer::Placed>& placed) {
 #if RTC_VERSION_MAJOR >= 4
   rtcInitRayQueryContext(&query);
 #else
   rtcInitIntersectContext(&query);
 #endif
   query.placed = &placed;
-  return query;
 }
 
-/// Candidates up to this much further are still offered, so that equal distances always reach the tie rule.
-constexpr float kTieReach = 1.0F + 0x1p-21F;
+/// Candidates up to this much further are still offered, so that equal distances always reach the tie rule: a box is
+/// entered where rounding puts it, which for grazing rays is off by a share of the ray's coordinates, not of t alone.
+float reach(float t, const Ray& ray) {
+  const float coordinates =
+      std::max(std::max(std::fabs(ray.origin.x), std::fabs(ray.origin.y)), std::fabs(ray.origin.z));
+  return t + 1e-4F * t + 0x1p-17F * coordinates;
+}
 
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
@@ -69,7 +73,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
     return;
   }
   query.nearest = candidate;
-  RTCRayN_tfar(args->ray, 1, 0) = candidate.t * kTieReach;
+  RTCRayN_tfar(args->ray, 1, 0) = reach(candidate.t, *query.ray);
 }
 
 void collect_crossings(const RTCFilterFunctionNArguments* args) {
@@ -88,13 +92,13 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
 
 bool is_traceable(const Ray& ray) {
   constexpr float kLargest = 1e18F;
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(std::fabs(ray.origin[axis]) < kLargest) || !(std::fabs(ray.direction[axis]) < kLargest)) return false;
-  return ray.direction.dot(ray.direction) > 0 && ray.t_max > 0;
+  const auto is_bounded = [](const Imath::V3f& v) {
+    return std::fabs(v.x) < kLargest && std::fabs(v.y) < kLargest && std::fabs(v.z) < kLargest;
+  };
+  return is_bounded(ray.origin) && is_bounded(ray.direction) && ray.direction.dot(ray.direction) > 0 && ray.t_max > 0;
 }
 
-RTCRay embree_ray(const Ray& ray) {
-  RTCRay r{};
+void set_ray(RTCRay& r, const Ray& ray) {
   r.org_x = ray.origin.x;
   r.org_y = ray.origin.y;
   r.org_z = ray.origin.z;
@@ -103,8 +107,10 @@ RTCRay embree_ray(const Ray& ray) {
   r.dir_z = ray.direction.z;
   r.tnear = 0;
   r.tfar = ray.t_max;
+  r.time = 0;
   r.mask = 0xFFFFFFFFU;
-  return r;
+  r.id = 0;
+  r.flags = 0;
 }
 
 }  // namespace
@@ -132,8 +138,8 @@ struct Tracer::Impl {
     rtcSetSceneFlags(level.scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree reads 16 bytes at the last vertex, so it gets a copy of its own.
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                  3 * sizeof(float), mesh->positions.size()));
+    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->positions.size()));
     auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh->triangles.size()));
     if (positions == nullptr || triangles == nullptr) throw std::bad_alloc();
@@ -164,19 +170,24 @@ Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {
   TopLevel::Impl& top = *level.impl_;
   top.scene = rtcNewScene(impl_->device);
   rtcSetSceneFlags(top.scene, RTC_SCENE_FLAG_ROBUST);
-  for (const Placed& placed : objects) {
-    if (!placed.object->alive || placed.object->mesh->triangles.empty()) continue;
+  for (const Placed& placed : objects)
+    if (placed.object->alive && !placed.object->mesh->triangles.empty()) top.placed.push_back(placed);
+  // An object alone would be the root of its top level and be met without the test of its box that it gets among
+  // others; boxes of instances are rounded, so at silhouettes the two could disagree. Twice the same object makes it a
+  // child.
+  if (top.placed.size() == 1) top.placed.push_back(top.placed.front());
+  for (std::size_t i = 0; i < top.placed.size(); ++i) {
+    const RayObject& object = *top.placed[i].object;
     RTCGeometry instance = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, impl_->bottom_level(placed.object->mesh));
-    const Transform& m = placed.object->to_world;
+    rtcSetGeometryInstancedScene(instance, impl_->bottom_level(object.mesh));
     float columns[12];  // 3x4, column by column: Imath's rows are Embree's columns
-    for (int column = 0; column < 4; ++column) std::copy_n(m[column], 3, columns + std::ptrdiff_t{3} * column);
+    for (int column = 0; column < 4; ++column)
+      std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(instance);
-    rtcAttachGeometryByID(top.scene, instance, static_cast<unsigned>(top.placed.size()));
+    rtcAttachGeometryByID(top.scene, instance, static_cast<unsigned>(i));
     rtcReleaseGeometry(instance);
-    top.placed.push_back(placed);
-    top.meshes.push_back(placed.object->mesh);
+    top.meshes.push_back(object.mesh);
   }
   rtcCommitScene(top.scene);
   return level;
@@ -191,11 +202,13 @@ Tracer::TopLevel Tracer::build(const RayScene& scene) {
 
 Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
   if (level.empty() || !is_traceable(ray)) return {};
-  Query query = make_query(level.impl_->placed);
+  Query query;
+  start(query, level.impl_->placed);
+  query.ray = &ray;
   query.nearest.t = ray.t_max;
   query.nearest.key = ~std::uint64_t{0};
-  RTCRayHit ray_hit{};
-  ray_hit.ray = embree_ray(ray);
+  RTCRayHit ray_hit;
+  set_ray(ray_hit.ray, ray);
   ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
@@ -206,15 +219,18 @@ Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
 #else
   rtcIntersect1(level.impl_->scene, &query, &ray_hit);
 #endif
-  return query.nearest.object.is_none() ? Meeting{} : query.nearest;
+  if (query.nearest.object.is_none()) query.nearest.t = std::numeric_limits<float>::infinity();
+  return query.nearest;
 }
 
 bool Tracer::passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings) {
   crossings.clear();
   if (level.empty() || !is_traceable(ray)) return true;
-  Query query = make_query(level.impl_->placed);
+  Query query;
+  start(query, level.impl_->placed);
   query.crossings = &crossings;
-  RTCRay shadow_ray = embree_ray(ray);
+  RTCRay shadow_ray;
+  set_ray(shadow_ray, ray);
 #if RTC_VERSION_MAJOR >= 4
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
@@ -224,8 +240,10 @@ bool Tracer::passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>
   rtcOccluded1(level.impl_->scene, &query, &shadow_ray);
 #endif
   if (shadow_ray.tfar < 0) return false;  // Embree's sign of an occluded ray
+  if (crossings.size() < 2) return true;
   const auto place = [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); };
-  std::sort(crossings.begin(), crossings.end(), [&](const Crossing& a, const Crossing& b) { return place(a) < place(b); });
+  std::sort(crossings.begin(), crossings.end(),
+            [&](const Crossing& a, const Crossing& b) { return place(a) < place(b); });
   const auto same = [&](const Crossing& a, const Crossing& b) { return place(a) == place(b); };
   crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
   return true;

@@ -14,7 +14,7 @@ namespace relook {
 
 struct Ray {
   Point origin;
-  Direction direction;       // any length; t counts in its lengths
+  Direction direction;  // any length; t counts in its lengths
   float t_max = std::numeric_limits<float>::infinity();
 };
 

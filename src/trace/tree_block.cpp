@@ -25,8 +25,7 @@ float coat_reflectance(float cosine) {
 Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, float scale) {
   const TextureSlot& map = object.material->slot(slot);
   if (map.kind == TextureKind::none) return node.point.shading;
-  const Rgba texel =
-      texture_value(map, texture_coordinates(object, node.hit, node.point.local, map), node.footprint);
+  const Rgba texel = texture_value(map, texture_coordinates(object, node.hit, node.point.local, map), node.footprint);
   return mapped_normal(tangent_frame(object, node.hit, node.point, map), node.point, texel, scale);
 }
 
@@ -87,8 +86,7 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
   const float counted = optics.dielectric_cut ? 1.0F : 0.0F;
   const auto factor = [&](float term) { return 1.0F - counted + counted * term; };
 
-  if (optics.reflects)
-    spawner.add(Branch::reflection, mirrored(d, n, node.point.geometric), 1.0F, factor(reflectance));
+  if (optics.reflects) spawner.add(Branch::reflection, mirrored(d, n, node.point.geometric), 1.0F, factor(reflectance));
   if (optics.coat_reflects && !node.point.inside) {
     const Normal coat = normal_of_slot(node, object, Slot::clearcoat_normal, material.clearcoat_normal_scale);
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,

@@ -1,5 +1,5 @@
-// Ray trees in flight: the nodes of some samples with everything that follows from their hits, ready to be shaded, packed
-// into the compact form, or both. Nodes of a sample stand together in preorder, children in the order of Branch.
+// Ray trees in flight: the nodes of some samples with everything that follows from their hits, ready to be shaded,
+// packed into the compact form, or both. Nodes of a sample stand together in preorder, children in the order of Branch.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,10 +16,10 @@ inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
 struct SpawnedRay {
   Point origin{0, 0, 0};
   Direction direction{0, 0, -1};  // unit
-  float cone_width = 0;        // metres, at the origin
-  float cone_spread = 0;       // metres per metre
-  float fresnel_product = 1;   // of the dielectric terms so far: the cut-off
-  std::uint8_t generation = 1; // 1: primary
+  float cone_width = 0;           // metres, at the origin
+  float cone_spread = 0;          // metres per metre
+  float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
+  std::uint8_t generation = 1;    // 1: primary
   Branch branch = Branch::primary;
 };
 
@@ -27,13 +27,13 @@ struct SpawnedRay {
 struct RayNode {
   std::uint32_t parent = kNoNode;
   std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode};
-  std::uint32_t sample = 0;       // within the tile
-  ObjectId object;                // none: miss
+  std::uint32_t sample = 0;  // within the tile
+  ObjectId object;           // none: miss
   Hit hit;
-  SpawnedRay ray;                 // that led here
-  std::uint8_t cut_mask = 0;      // branches that the Fresnel cut-off removed
-  float length = 0;               // metres from the ray's origin
-  float footprint = 0;            // ray-cone width at the hit over the cosine of incidence
+  SpawnedRay ray;             // that led here
+  std::uint8_t cut_mask = 0;  // branches that the Fresnel cut-off removed
+  float length = 0;           // metres from the ray's origin
+  float footprint = 0;        // ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
 };
@@ -71,11 +71,11 @@ struct TreeBlock {
   void clear() { rewind({}); }
 };
 
-/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back. A pure function of the node, its
-/// object and the options.
+/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back. A pure function of the node,
+/// its object and the options.
 struct Spawned {
   std::array<SpawnedRay, kBranches> rays;
-  std::uint8_t mask = 0;      // bit b: rays[b] is there
+  std::uint8_t mask = 0;  // bit b: rays[b] is there
   std::uint8_t cut_mask = 0;
 };
 [[nodiscard]] Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth);

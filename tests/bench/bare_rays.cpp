@@ -26,6 +26,7 @@ TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile
   const Scene& scene = ray_scene.scene();
   const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
   const GrowScene grow{ray_scene, nullptr, image.view.max_depth};
+  const PrimaryRays primaries(scene.camera, image.view);
   TileRays result;
   TreeBlock block;
   for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
@@ -33,7 +34,7 @@ TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile
     const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), scene.light_order.size()),
                             trees.hits_of(sample).data()};
     block.clear();
-    expand_tree(grow, primary_ray(scene.camera, image.view, rect, sample), sample, stored, block);
+    expand_tree(grow, primaries.ray(rect, sample), sample, stored, block);
     for (const RayNode& node : block.nodes) {
       result.rays.push_back({node.ray.origin, node.ray.direction});
       for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light) {
@@ -75,7 +76,8 @@ RTCScene top_level(RTCDevice device, const RayScene& ray_scene) {
     RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, mesh);
     float columns[12];
-    for (int column = 0; column < 4; ++column) std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);
+    for (int column = 0; column < 4; ++column)
+      std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(instance);
     rtcAttachGeometry(scene, instance);
@@ -87,8 +89,18 @@ RTCScene top_level(RTCDevice device, const RayScene& ray_scene) {
 }
 
 RTCRay embree_ray(const Ray& ray) {
-  return {ray.origin.x, ray.origin.y, ray.origin.z, 0, ray.direction.x, ray.direction.y, ray.direction.z, 0,
-          ray.t_max,    0xFFFFFFFFU,  0,            0};
+  return {ray.origin.x,
+          ray.origin.y,
+          ray.origin.z,
+          0,
+          ray.direction.x,
+          ray.direction.y,
+          ray.direction.z,
+          0,
+          ray.t_max,
+          0xFFFFFFFFU,
+          0,
+          0};
 }
 
 void shoot(RTCScene scene, const TileRays& tile) {

@@ -88,11 +88,14 @@ void print_render(const Options& options, const SceneState& state, double& full_
   const double rays = static_cast<double>(bare.rays + bare.shadow_segments);
   const double render_seconds = stats.render_seconds;
   std::printf("%-46s %10.3f s (acceleration structures %.3f s)\n", "full render", full_seconds, stats.build_seconds);
-  std::printf("%-46s %10.2f M rays, %.2f M shadow segments\n", "rays of the full render", static_cast<double>(bare.rays) * 1e-6,
-              static_cast<double>(bare.shadow_segments) * 1e-6);
-  std::printf("%-46s %10.3f s, %.2f M rays/s\n", "bare Embree loop over the same rays", bare.seconds, rays / bare.seconds * 1e-6);
-  std::printf("%-46s %10.1f %% (to reach: 70 %%)\n", "rays/s of the full render over the bare loop", 100 * bare.seconds / render_seconds);
-  std::printf("%-46s %10.2f (paper: 1.72; to reach: 1.3)\n", "preprocess / full render", preprocess_seconds / full_seconds);
+  std::printf("%-46s %10.2f M rays, %.2f M shadow segments\n", "rays of the full render",
+              static_cast<double>(bare.rays) * 1e-6, static_cast<double>(bare.shadow_segments) * 1e-6);
+  std::printf("%-46s %10.3f s, %.2f M rays/s\n", "bare Embree loop over the same rays", bare.seconds,
+              rays / bare.seconds * 1e-6);
+  std::printf("%-46s %10.1f %% (to reach: 70 %%)\n", "rays/s of the full render over the bare loop",
+              100 * bare.seconds / render_seconds);
+  std::printf("%-46s %10.2f (paper: 1.72; to reach: 1.3)\n", "preprocess / full render",
+              preprocess_seconds / full_seconds);
 }
 
 void print_sizes(const Replayer& replayer, const Options& options) {
@@ -127,7 +130,8 @@ void print_texture_price(const SceneState& state, double nanoseconds_per_ray) {
 
 void print_steps(Replayer& replayer, const Options& options, double full_seconds) {
   const Journal journal = read_journal(options.journal);
-  std::printf("\n%-28s %-9s %9s %9s %9s  %9s  %s\n", "step", "class", "affected", "changed", "ms", "full/edit", "paper");
+  std::printf("\n%-28s %-9s %9s %9s %9s  %9s  %s\n", "step", "class", "affected", "changed", "ms", "full/edit",
+              "paper");
   for (const JournalStep& step : journal.steps) {
     std::vector<Edit> edits = step.drag;
     if (edits.empty()) edits.push_back(step.edit);
@@ -146,8 +150,8 @@ void print_steps(Replayer& replayer, const Options& options, double full_seconds
 
 void run(const Options& options) {
   SceneState state = load(options);
-  std::printf("relook_bench: %s at %ux%u, %u sample(s), %zu thread(s), %zu objects\n", options.scene.c_str(), options.width,
-              options.height, options.view.samples, thread_count(), state.scene().objects.size());
+  std::printf("relook_bench: %s at %ux%u, %u sample(s), %zu thread(s), %zu objects\n", options.scene.c_str(),
+              options.width, options.height, options.view.samples, thread_count(), state.scene().objects.size());
   double full_seconds = 0;
   Image image;
   print_render(options, state, full_seconds, image);

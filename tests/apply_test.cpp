@@ -1,0 +1,458 @@
+// Edits: RFC 6902 on the look document in place, atomic, checked, with the entities around them kept consistent.
+#include "edit/apply.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "base/files.h"
+#include "look_fixture.h"
+
+namespace relook {
+namespace {
+
+Json look_at(const SceneState& state, const char* pointer) {
+  return state.document().look.at(Json::json_pointer(pointer));
+}
+
+/// The message of a refused edit; the state must be exactly as before.
+std::string refusal(SceneState& state, const std::string& edit) {
+  const Json look = state.document().look;
+  const std::string scene = scene_text(state.scene());
+  const SlotCounts counts = state.slot_counts();
+  const std::size_t meshes = state.document().assets->meshes.size();
+  std::string message = message_of([&] { (void)apply_json(state, edit); });
+  EXPECT_NE(message, "") << edit;
+  EXPECT_EQ(state.document().look, look) << edit;
+  EXPECT_EQ(scene_text(state.scene()), scene) << edit;
+  EXPECT_EQ(state.slot_counts().objects, counts.objects);
+  EXPECT_EQ(state.slot_counts().materials, counts.materials);
+  EXPECT_EQ(state.slot_counts().lights, counts.lights);
+  EXPECT_EQ(state.document().assets->meshes.size(), meshes);
+  const std::string prefix = "j.json: ";
+  return message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+}
+std::string refusal(const std::string& edit) {
+  SceneState state = small_state();
+  return refusal(state, edit);
+}
+
+TEST(Patch, replaces_a_value_and_a_component) {
+  SceneState state = small_state();
+  (void)apply_json(
+      state, R"([{"op": "replace", "path": "/materials/Gold/pbrMetallicRoughness/baseColorFactor/1", "value": 0.5},
+                              {"op": "replace", "path": "/lights/Bulb/intensity", "value": 7}])");
+  EXPECT_EQ(state.scene().material(MaterialId(2)).name, "Gold");
+  EXPECT_EQ(state.scene().material(MaterialId(2)).base_color.g, 0.5F);
+  EXPECT_EQ(look_at(state, "/lights/Bulb/intensity"), 7);
+}
+
+TEST(Patch, adds_into_arrays_and_at_their_end) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "remove", "path": "/nodes/Group/children/1"},
+                              {"op": "add", "path": "/nodes/Group/children/0", "value": "Arm"},
+                              {"op": "add", "path": "/nodes/Group/children/-", "value": "Floor"}])");
+  EXPECT_EQ(look_at(state, "/nodes/Group/children"), Json({"Arm", "Sphere", "Floor"}));
+  EXPECT_EQ(state.parent_of("Floor"), "Group");
+}
+
+TEST(Patch, removing_a_member_brings_its_default_back) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "remove", "path": "/materials/Gold/pbrMetallicRoughness/roughnessFactor"},
+                              {"op": "remove", "path": "/materials/Glass/extensions/KHR_materials_transmission"},
+                              {"op": "replace", "path": "/materials/Gold/pbrMetallicRoughness/roughnessFactor", "value": 0.75}])");
+  EXPECT_EQ(look_at(state, "/materials/Glass/extensions/KHR_materials_transmission/transmissionFactor"), 0);
+  EXPECT_EQ(look_at(state, "/materials/Gold/pbrMetallicRoughness/roughnessFactor"), 0.75);
+}
+
+TEST(Patch, copies_and_moves_values) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "copy", "from": "/materials/Gold", "path": "/materials/Gilt"},
+                              {"op": "move", "from": "/materials/Gilt", "path": "/materials/Leaf"},
+                              {"op": "replace", "path": "/meshes/Slab/primitives/0/material", "value": "Leaf"}])");
+  EXPECT_FALSE(state.document().look["materials"].contains("Gilt"));
+  EXPECT_EQ(look_at(state, "/materials/Leaf"), look_at(state, "/materials/Gold"));
+}
+
+TEST(Patch, test_is_a_guard_that_compares_numbers_by_value) {
+  SceneState state = small_state();
+  (void)apply_json(state,
+                   R"([{"op": "test", "path": "/materials/Gold/pbrMetallicRoughness/metallicFactor", "value": 1}])");
+  EXPECT_EQ(refusal(state, R"([{"op": "replace", "path": "/lights/Bulb/intensity", "value": 1},
+                              {"op": "test", "path": "/lights/Sunlight/intensity", "value": 2}])"),
+            "/edit/1/value: the test failed: /lights/Sunlight/intensity is 1.0");
+}
+
+TEST(Patch, escapes_and_indices_in_pointers) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "add", "path": "/materials/a~1b~0c", "value": {}},
+                              {"op": "replace", "path": "/materials/1/extensions/KHR_materials_ior/ior", "value": 2},
+                              {"op": "replace", "path": "/meshes/0/primitives/0/material", "value": 1},
+                              {"op": "replace", "path": "/extensions/KHR_lights_punctual/lights/0/intensity", "value": 3}])");
+  EXPECT_TRUE(state.document().look["materials"].contains("a/b~c"));
+  EXPECT_EQ(look_at(state, "/materials/Glass/extensions/KHR_materials_ior/ior"), 2);
+  EXPECT_EQ(look_at(state, "/meshes/Ball/primitives/0/material"), "Glass");
+  EXPECT_EQ(look_at(state, "/lights/Bulb/intensity"), 3);
+}
+
+TEST(Patch, whole_sections_and_the_whole_document) {
+  SceneState state = small_state();
+  Json look = state.document().look;
+  look["materials"]["Gold"]["alphaCutoff"] = 0.125;
+  const Json edit = Json::array({{{"op", "replace"}, {"path", ""}, {"value", look}}});
+  const SceneDelta delta = apply_json(state, edit.dump());
+  EXPECT_EQ(delta.materials.size(), 1U);
+  EXPECT_TRUE(delta.objects.empty());
+  const Json lights = Json::array({{{"op", "replace"}, {"path", "/lights"}, {"value", look["lights"]}}});
+  EXPECT_TRUE(apply_json(state, lights.dump()).empty());
+}
+
+TEST(PatchErrors, name_the_operation_and_suggest_the_nearest) {
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/materials/Gould/alphaCutoff", "value": 0}])"),
+            "/edit/0/path: no material \"Gould\"; did you mean \"Gold\"?");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/material/Gold", "value": 0}])"),
+            "/edit/0/path: no \"material\"; did you mean \"materials\"?");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/materials/Gold/alphaCutof", "value": 0}])"),
+            "/edit/0/path: no \"alphaCutof\" in /materials/Gold; did you mean \"alphaCutoff\"?");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/materials/Gold/alphaCutof", "value": 0}])"),
+            "/edit/0/path: unknown key \"alphaCutof\"; did you mean \"alphaCutoff\"?");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/materials/New", "value": {"doublesided": true}}])"),
+            "/edit/0/value/doublesided: unknown key \"doublesided\"; did you mean \"doubleSided\"?");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Sphere/mesh", "value": "Bal"}])"),
+            "/edit/0/value: no mesh \"Bal\"; did you mean \"Ball\"?");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Sphere/mesh", "value": 99}])"),
+            "/edit/0/value: there is no mesh of index 99");
+  EXPECT_EQ(refusal(R"([{"op": "copy", "from": "/materials/Gould", "path": "/materials/B"}])"),
+            "/edit/0/from: no material \"Gould\"; did you mean \"Gold\"?");
+}
+
+TEST(PatchErrors, arrays) {
+  const std::string children = R"([{"op": "add", "path": "/nodes/Group/children/)";
+  EXPECT_EQ(refusal(children + R"(3", "value": "Floor"}])"),
+            "/edit/0/path: index 3 is past the end of an array of 3 in /nodes/Group/children");
+  EXPECT_EQ(refusal(children + R"(01", "value": "Floor"}])"),
+            "/edit/0/path: \"01\" is no array index in /nodes/Group/children");
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/nodes/Group/children/-"}])"),
+            "/edit/0/path: \"-\" is no array index in /nodes/Group/children");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/lights/Bulb/intensity/0", "value": 1}])"),
+            "/edit/0/path: nothing lies below a plain value in /lights/Bulb/intensity");
+}
+
+TEST(PatchErrors, types_and_ranges) {
+  const std::string gold = R"([{"op": "replace", "path": "/materials/Gold/)";
+  EXPECT_EQ(refusal(gold + R"(pbrMetallicRoughness/roughnessFactor", "value": 1.5}])"),
+            "/edit/0/value: 1.5 is above 1");
+  EXPECT_EQ(refusal(gold + R"(pbrMetallicRoughness/roughnessFactor", "value": "x"}])"),
+            "/edit/0/value: expected a number, got a string");
+  EXPECT_EQ(refusal(gold + R"(pbrMetallicRoughness", "value": {"baseColorFactor": [1, 1, 1]}}])"),
+            "/edit/0/value/baseColorFactor: expected an array of 4 numbers, got 3");
+  EXPECT_EQ(refusal(gold + R"(pbrMetallicRoughness", "value": 5}])"),
+            "/edit/0/value: expected an object, got a number");
+  EXPECT_EQ(refusal(gold + R"(alphaMode", "value": "MSK"}])"),
+            "/edit/0/value: \"MSK\" is not one of OPAQUE, MASK, BLEND; did you mean \"MASK\"?");
+  EXPECT_EQ(refusal(gold + R"(doubleSided", "value": 1}])"), "/edit/0/value: expected true or false, got a number");
+  EXPECT_EQ(refusal(gold + R"(extensions/KHR_materials_ior/ior", "value": 0.5}])"),
+            "/edit/0/value: an index of refraction is 0 or at least 1");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/lights/Bulb/range", "value": 0}])"), "/edit/0/value: 0 is not above 0");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/lights/Cone/spot/innerConeAngle", "value": 1}])"),
+            "/edit/0/value: the inner cone is not inside the outer cone");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/samplers/0/wrapS", "value": 20000}])"),
+            "/edit/0/value: 20000 is not one of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/lights/New", "value": {}}])"), "/edit/0/value: \"type\" is missing");
+}
+
+TEST(PatchErrors, nodes) {
+  const std::string sphere = R"([{"op": "replace", "path": "/nodes/Sphere/)";
+  EXPECT_EQ(refusal(sphere + R"(rotation", "value": [0, 0, 0, 0]}])"),
+            "/edit/0/value: a rotation must not be the zero quaternion");
+  EXPECT_EQ(refusal(sphere + R"(translation/2", "value": 1e7}])"), "/edit/0/value: 10000000.0 is above 1000000");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/nodes/Hand/translation", "value": [0, 0, 1]}])"),
+            "/edit/0/value: a node has either a matrix or translation, rotation and scale");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Hand/matrix/3", "value": 1}])"),
+            "/edit/0/path: /nodes/Hand/matrix: the matrix is not affine: its last row must be 0, 0, 0, 1");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/nodes/Floor/children/-", "value": "Sphere"}])"),
+            "/edit/0/value: node \"Sphere\" is already a child of \"Group\"");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/nodes/Hand/children/-", "value": "Group"}])"),
+            "/edit/0/path: /nodes/Group/children: the node is its own ancestor");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/nodes/Floor/children/-", "value": "Floor"}])"),
+            "/edit/0/path: /nodes/Floor/children: the node is its own ancestor");
+}
+
+TEST(PatchErrors, what_is_still_in_use_cannot_go) {
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/materials/Gold"}])"),
+            "/edit/0/path: /meshes/Ball/primitives/0/material: no material \"Gold\"");
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/images/WoodImage"}])"),
+            "/edit/0/path: /textures/Wood/source: no image \"WoodImage\"; did you mean \"BumpImage\"?");
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/lights/Bulb"}])"),
+            "/edit/0/path: /nodes/Lamp/extensions/KHR_lights_punctual/light: no light \"Bulb\"");
+  EXPECT_NE(refusal(R"([{"op": "remove", "path": "/materials"}])"), "");
+  EXPECT_NE(refusal(R"([{"op": "replace", "path": "", "value": 3}])"), "");
+  EXPECT_NE(refusal(R"([{"op": "remove", "path": "/scene"}])"), "");
+  EXPECT_NE(refusal(R"([{"op": "add", "path": "/accessors", "value": []}])"), "");
+}
+
+TEST(PatchErrors, a_later_failure_takes_everything_back) {
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/nodes/Group"},
+                        {"op": "add", "path": "/materials/New", "value": {}},
+                        {"op": "add", "path": "/nodes/N", "value": {"mesh": "Ball"}},
+                        {"op": "replace", "path": "/materials/Gold/alphaCutoff", "value": 0.1},
+                        {"op": "replace", "path": "/lights/Bulb/intensity", "value": -1}])"),
+            "/edit/4/value: -1 is below 0");
+}
+
+TEST(ActiveCamera, is_fixed) {
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Eye/translation", "value": [1, 0, 0]}])"),
+            "/edit/0/path: node \"Eye\" holds the active camera, which is fixed");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Rig/translation", "value": [1, 0, 0]}])"),
+            "/edit/0/path: /nodes/Eye: this moves or hides the active camera, which is fixed");
+  EXPECT_EQ(
+      refusal(R"([{"op": "replace", "path": "/nodes/Rig/extensions/KHR_node_visibility/visible", "value": false}])"),
+      "/edit/0/path: /nodes/Eye: this moves or hides the active camera, which is fixed");
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/nodes/Rig"}])"),
+            "/edit/0/path: /nodes/Eye: the active camera's node cannot be removed");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/cameras/Lens/perspective/yfov", "value": 1}])"),
+            "/edit/0/path: cameras are fixed and cannot be edited");
+}
+
+TEST(ActiveCamera, its_ancestors_may_get_other_children) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "add", "path": "/nodes/Rig/children/-", "value": "Floor"}])");
+  EXPECT_EQ(state.parent_of("Floor"), "Rig");
+}
+
+TEST(Nodes, removing_one_takes_its_descendants_and_its_mention) {
+  SceneState state = small_state();
+  const SceneDelta delta = apply_json(state, R"([{"op": "remove", "path": "/nodes/Arm"}])");
+  EXPECT_FALSE(state.document().look["nodes"].contains("Hand"));
+  EXPECT_EQ(look_at(state, "/nodes/Group/children"), Json({"Sphere"}));
+  ASSERT_EQ(delta.objects.size(), 1U);
+  EXPECT_EQ(delta.objects[0].before.node, "Hand");
+  EXPECT_FALSE(state.scene().object(delta.objects[0].id).alive);
+}
+
+TEST(Nodes, removing_a_light_node_keeps_the_light) {
+  SceneState state = small_state();
+  const SceneDelta delta = apply_json(state, R"([{"op": "remove", "path": "/nodes/Lamp"}])");
+  EXPECT_EQ(delta.lights.size(), 1U);
+  EXPECT_TRUE(state.document().look["lights"].contains("Bulb"));
+  EXPECT_EQ(state.scene().light_order.size(), 1U);
+}
+
+TEST(Nodes, adding_removing_and_adding_again_gives_the_same_scene) {
+  SceneState state = small_state();
+  const std::string add =
+      R"([{"op": "add", "path": "/nodes/Chair", "value": {"mesh": "Pair", "translation": [1, 2, 3]}}])";
+  (void)apply_json(state, add);
+  const std::string once = scene_text(state.scene());
+  (void)apply_json(state, R"([{"op": "remove", "path": "/nodes/Chair"}])");
+  (void)apply_json(state, add);
+  EXPECT_EQ(scene_text(state.scene()), once);
+}
+
+TEST(Nodes, a_parent_and_its_child_can_come_in_one_edit) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "add", "path": "/nodes/P", "value": {"children": ["C"], "translation": [0, 0, 9]}},
+                              {"op": "add", "path": "/nodes/C", "value": {"mesh": "Ball"}},
+                              {"op": "remove", "path": "/nodes/Group"}])");
+  for (const Object& object : state.scene().objects) {
+    if (object.node == "C") {
+      EXPECT_EQ(object.to_world[3][2], 9);
+    }
+  }
+}
+
+TEST(Nodes, renaming_keeps_the_place_in_the_hierarchy) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "move", "from": "/nodes/Arm", "path": "/nodes/Limb"}])");
+  EXPECT_EQ(look_at(state, "/nodes/Group/children"), Json({"Sphere", "Limb"}));
+  EXPECT_EQ(state.parent_of("Hand"), "Limb");
+}
+
+TEST(Nodes, copying_one_copies_its_descendants) {
+  SceneState state = small_state();
+  const SceneDelta delta = apply_json(state, R"([{"op": "copy", "from": "/nodes/Group", "path": "/nodes/Twin"}])");
+  EXPECT_EQ(look_at(state, "/nodes/Twin/children"), Json({"Twin/Sphere", "Twin/Arm"}));
+  EXPECT_EQ(look_at(state, "/nodes/Twin~1Arm/children"), Json({"Twin/Hand"}));
+  EXPECT_EQ(delta.objects.size(), 2U);
+}
+
+TEST(Meshes, a_copy_has_materials_of_its_own) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "copy", "from": "/meshes/Slab", "path": "/meshes/Slab2"},
+                              {"op": "replace", "path": "/meshes/Slab2/primitives/0/material", "value": "Glass"},
+                              {"op": "replace", "path": "/nodes/Hand/mesh", "value": "Slab2"}])");
+  for (const Object& object : state.scene().objects) {
+    if (object.node != "Hand" && object.node != "Floor") continue;
+    EXPECT_EQ(state.scene().material(object.material).name, object.node == "Hand" ? "Glass" : "Mirror");
+  }
+}
+
+TEST(Nodes, copying_one_over_its_own_descendant_is_refused) {
+  EXPECT_EQ(refusal(R"([{"op": "copy", "from": "/nodes/Group", "path": "/nodes/Sphere"}])"),
+            "/edit/0/path: a node cannot be copied over one of its own descendants");
+}
+
+TEST(Materials, unlit_follows_the_extension) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "add", "path": "/materials/Gold/extensions/KHR_materials_unlit", "value": {}}])");
+  EXPECT_EQ(state.scene().material(MaterialId(2)).model, IlluminationModel::unlit);
+  (void)apply_json(state, R"([{"op": "remove", "path": "/materials/Gold/extensions/KHR_materials_unlit"}])");
+  EXPECT_EQ(state.scene().material(MaterialId(2)).model, IlluminationModel::metallic_roughness);
+}
+
+/// Steps read as a journal would give them.
+Journal journal_of(const std::vector<std::string>& edits) {
+  Journal journal;
+  journal.file = "j.json";
+  for (const std::string& edit : edits) {
+    JournalStep step;
+    step.where = "/steps/" + std::to_string(journal.steps.size());
+    step.edit = edit_of(edit);
+    journal.steps.push_back(std::move(step));
+  }
+  return journal;
+}
+
+TEST(Rehearsal, leaves_the_state_exactly_as_it_was) {
+  SceneState state = small_state();
+  const Json look = state.document().look;
+  const std::string scene = scene_text(state.scene());
+  const SlotCounts counts = state.slot_counts();
+  const std::vector<std::string> edits{
+      R"([{"op": "add", "path": "/nodes/N", "value": {"mesh": "Ball"}}, {"op": "add", "path": "/materials/M", "value": {}}])",
+      R"([{"op": "replace", "path": "/nodes/N/translation", "value": [1, 1, 1]}, {"op": "remove", "path": "/nodes/Group"}])",
+      R"([{"op": "add", "path": "/nodes/L", "value": {"extensions": {"KHR_lights_punctual": {"light": "Cone"}}}}])",
+      R"([{"op": "replace", "path": "/scene/extras/relook/ambient", "value": [1, 1, 1]}])"};
+  check_journal(state, journal_of(edits));
+  EXPECT_EQ(state.document().look, look);
+  EXPECT_EQ(scene_text(state.scene()), scene);
+  EXPECT_EQ(state.slot_counts().objects, counts.objects);
+  EXPECT_EQ(state.slot_counts().materials, counts.materials);
+  EXPECT_EQ(state.slot_counts().lights, counts.lights);
+
+  std::vector<std::string> wrong = edits;
+  wrong.push_back(R"([{"op": "remove", "path": "/nodes/Sphere"}])");
+  EXPECT_EQ(message_of([&] { check_journal(state, journal_of(wrong)); }), "j.json: /edit/0/path: no node \"Sphere\"");
+  EXPECT_EQ(state.document().look, look);
+  EXPECT_EQ(scene_text(state.scene()), scene);
+  for (const std::string& edit : edits) (void)apply_json(state, edit);
+}
+
+/// A drag of one entry.
+JournalStep drag_of(const std::vector<std::string>& select, const std::string& edit) {
+  JournalStep step;
+  step.where = "/steps/0";
+  step.select = select;
+  step.drag = {edit_of(edit)};
+  return step;
+}
+
+TEST(Drag, may_touch_its_selection_and_what_hangs_on_it) {
+  const SceneState state = small_state();
+  check_drag_scope(state, drag_of({"/nodes/Group"}, R"([{"op": "replace", "path": "/nodes/Hand/matrix/12", "value": 1},
+                                                        {"op": "test", "path": "/lights/Bulb/intensity", "value": 1}])"),
+                   0, "j.json");
+  EXPECT_EQ(message_of([&] {
+              check_drag_scope(
+                  state,
+                  drag_of({"/nodes/Arm"}, R"([{"op": "replace", "path": "/nodes/Sphere/mesh", "value": "Slab"}])"), 0,
+                  "j.json");
+            }),
+            "j.json: /edit/0/path: node \"Sphere\" is not part of the selection");
+  EXPECT_EQ(message_of([&] {
+              check_drag_scope(
+                  state,
+                  drag_of({"/nodes/Arm"}, R"([{"op": "replace", "path": "/lights/Bulb/intensity", "value": 1}])"), 0,
+                  "j.json");
+            }),
+            "j.json: /edit/0/path: a drag moves the nodes of its selection and nothing else");
+  EXPECT_EQ(message_of([&] {
+              check_drag_scope(state, drag_of({"/nodes/Arm"}, R"([{"op": "remove", "path": "/nodes/Hand"}])"), 0,
+                               "j.json");
+            }),
+            "j.json: /edit/0/path: a drag neither adds nor removes nodes");
+  EXPECT_EQ(message_of([&] { check_drag_scope(state, drag_of({"/nodes/Army"}, "[]"), 0, "j.json"); }),
+            "j.json: /steps/0/select/0: no node \"Army\"; did you mean \"Arm\"?");
+}
+
+/// A folder with an image and a glTF file beside a journal.
+class AssetFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("relook_apply_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    const std::filesystem::path spheres = std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes" / "spheres";
+    std::filesystem::copy(spheres, folder_ / "spheres", std::filesystem::copy_options::recursive);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  SceneDelta apply(SceneState& state, const std::string& edit) {
+    return apply_edit(state, edit_of(edit), "j.json", folder_);
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(AssetFolder, an_asset_is_merged_under_its_node_with_a_prefix) {
+  SceneState state = small_state();
+  const std::size_t before = state.slot_counts().objects;
+  const SceneDelta delta =
+      apply(state,
+            R"([{"op": "add", "path": "/nodes/X", "value": {"asset": "spheres/spheres.gltf", "translation": [0, 9, 0]}},
+                                           {"op": "replace", "path": "/materials/X~1Glass/extensions/KHR_materials_ior/ior", "value": 2}])");
+  EXPECT_FALSE(state.document().look["nodes"]["X"].contains("asset"));
+  EXPECT_GT(delta.objects.size(), 3U);
+  EXPECT_EQ(state.slot_counts().objects, before + delta.objects.size());
+  EXPECT_EQ(state.parent_of("X/CentralSphere"), "X");
+  EXPECT_EQ(look_at(state, "/materials/X~1Glass/extensions/KHR_materials_ior/ior"), 2);
+  // A state compiled from the edited document is the same.
+  const SceneState fresh(state.document(), state.scene().camera, state.pyramids());
+  EXPECT_EQ(scene_text(fresh.scene()), scene_text(state.scene()));
+}
+
+TEST_F(AssetFolder, a_failed_edit_takes_the_asset_back) {
+  SceneState state = small_state();
+  const Json look = state.document().look;
+  const std::size_t meshes = state.document().assets->meshes.size(), images = state.document().assets->images.size();
+  EXPECT_NE(message_of([&] {
+              (void)apply(state, R"([{"op": "add", "path": "/nodes/X", "value": {"asset": "spheres/spheres.gltf"}},
+                                     {"op": "remove", "path": "/nodes/None"}])");
+            }),
+            "");
+  EXPECT_EQ(state.document().look, look);
+  EXPECT_EQ(state.document().assets->meshes.size(), meshes);
+  EXPECT_EQ(state.document().assets->images.size(), images);
+  EXPECT_EQ(state.document().assets->mesh_primitives.size(), 4U);
+}
+
+TEST_F(AssetFolder, files_outside_the_folder_are_refused) {
+  SceneState state = small_state();
+  for (const char* name : {"../x.glb", "/etc/passwd", "none.glb"}) {
+    const Json edit = Json::array({{{"op", "add"}, {"path", "/nodes/X"}, {"value", {{"asset", name}}}}});
+    EXPECT_NE(message_of([&] { (void)apply(state, edit.dump()); }), "") << name;
+    const Json image = Json::array({{{"op", "add"}, {"path", "/images/X"}, {"value", {{"uri", name}}}}});
+    EXPECT_NE(message_of([&] { (void)apply(state, image.dump()); }), "") << name;
+  }
+}
+
+TEST_F(AssetFolder, an_image_can_be_added_replaced_and_used) {
+  std::string uri;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "spheres" / "textures"))
+    if (entry.path().extension() == ".png") uri = "spheres/textures/" + entry.path().filename().string();
+  ASSERT_NE(uri, "");
+  SceneState state = small_state();
+  const Json edit = Json::array({{{"op", "add"}, {"path", "/images/New"}, {"value", {{"uri", uri}}}},
+                                 {{"op", "replace"}, {"path", "/textures/Wood/source"}, {"value", "New"}}});
+  const SceneDelta delta = apply(state, edit.dump());
+  ASSERT_EQ(delta.materials.size(), 2U);  // Gold and Cut
+  const std::shared_ptr<const TexturePyramid> added =
+      state.scene().material(delta.materials[0].id).slot(Slot::base_color).pyramid;
+  EXPECT_NE(added, delta.materials[0].before.slot(Slot::base_color).pyramid);
+  const Json back = Json::array({{{"op", "replace"}, {"path", "/textures/Wood/source"}, {"value", "WoodImage"}},
+                                 {{"op", "replace"}, {"path", "/images/WoodImage/uri"}, {"value", uri}}});
+  (void)apply(state, back.dump());
+  EXPECT_EQ(state.scene().material(delta.materials[0].id).slot(Slot::base_color).pyramid, added);
+}
+
+}  // namespace
+}  // namespace relook

@@ -1,0 +1,89 @@
+// Displacement maps: vertices move along normals, no cracks open, and the result is the same every time.
+#include "scene/displacement.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "look_fixture.h"
+
+namespace relook {
+namespace {
+
+Displacement constant_displacement(float scale, std::int32_t subdivide) {
+  Displacement displacement;  // no texture: height 1
+  displacement.scale = scale;
+  displacement.midlevel = 0.5F;
+  displacement.subdivide = subdivide;
+  return displacement;
+}
+
+/// Two squares at a right angle that share an edge by position but no vertices: flat-shaded.
+Mesh folded_mesh() {
+  Mesh mesh = square_mesh();
+  mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {0, -1, 0}, {1, -1, 0}, {1, 0, 0}});
+  mesh.triangles.push_back({4, 5, 6});
+  mesh.triangles.push_back({4, 6, 7});
+  mesh.uv[0].clear();
+  return mesh;
+}
+
+TEST(Displacement, moves_along_the_normal_by_scale_times_height_minus_midlevel) {
+  const Mesh moved = displaced(square_mesh(), constant_displacement(0.4F, 0));
+  for (const Point& position : moved.positions) EXPECT_FLOAT_EQ(position.y, 0.2F);
+  EXPECT_EQ(moved.bounds.min.y, moved.positions[0].y);
+}
+
+TEST(Displacement, subdivision_makes_four_of_one_and_keeps_columns_together) {
+  const Mesh fine = displaced(square_mesh(), constant_displacement(0, 2));
+  EXPECT_EQ(fine.triangles.size(), 32U);
+  EXPECT_EQ(fine.positions.size(), 25U);
+  EXPECT_EQ(fine.uv[0].size(), 25U);
+  for (std::size_t i = 0; i < fine.positions.size(); ++i) EXPECT_FLOAT_EQ(fine.uv[0][i].x, fine.positions[i].x);
+}
+
+TEST(Displacement, a_flat_shaded_mesh_stays_whole_and_flat) {
+  const Mesh moved = displaced(folded_mesh(), constant_displacement(1, 3));
+  EXPECT_TRUE(moved.normals.empty());
+  // Vertices on the shared edge came in pairs, and still do.
+  const Mesh still = displaced(folded_mesh(), constant_displacement(0, 3));
+  std::map<std::tuple<float, float, float>, Point> moved_to;
+  for (std::size_t i = 0; i < still.positions.size(); ++i) {
+    const Point& p = still.positions[i];
+    const auto [known, is_new] = moved_to.try_emplace({p.x, p.y, p.z}, moved.positions[i]);
+    if (!is_new) {
+      EXPECT_EQ(known->second, moved.positions[i]);
+    }
+  }
+  EXPECT_LT(moved_to.size(), still.positions.size());
+}
+
+TEST(Displacement, a_texture_lifts_what_is_bright) {
+  Mesh mesh = square_mesh();
+  mesh.normals.assign(4, Normal(0, 1, 0));
+  Displacement displacement = constant_displacement(1, 4);
+  displacement.texture.kind = TextureKind::procedural;
+  displacement.texture.procedural.kind = ProceduralKind::checker;
+  displacement.texture.procedural.scale = 4;
+  const Mesh moved = displaced(mesh, displacement);
+  float low = 1, high = -1;
+  for (const Point& position : moved.positions) {
+    low = std::min(low, position.y);
+    high = std::max(high, position.y);
+  }
+  EXPECT_FLOAT_EQ(low, -0.5F);
+  EXPECT_FLOAT_EQ(high, 0.5F);
+  for (const Normal& normal : moved.normals) EXPECT_NEAR(normal.length(), 1, 1e-5);
+  const Mesh again = displaced(mesh, displacement);
+  EXPECT_EQ(again.positions, moved.positions);
+  EXPECT_EQ(again.normals, moved.normals);
+}
+
+TEST(Displacement, too_much_subdivision_is_an_error) {
+  Mesh mesh = square_mesh();
+  mesh.triangles.resize(kMostDisplacedTriangles / 4 + 1, {0, 1, 2});
+  EXPECT_NE(message_of([&] { (void)displaced(mesh, constant_displacement(1, 1)); }), "");
+}
+
+}  // namespace
+}  // namespace relook
