@@ -79,10 +79,20 @@ TEST(Displacement, a_texture_lifts_what_is_bright) {
   EXPECT_EQ(again.normals, moved.normals);
 }
 
-TEST(Displacement, too_much_subdivision_is_an_error) {
-  Mesh mesh = square_mesh();
-  mesh.triangles.resize(kMostDisplacedTriangles / 4 + 1, {0, 1, 2});
-  EXPECT_NE(message_of([&] { (void)displaced(mesh, constant_displacement(1, 1)); }), "");
+TEST(Displacement, too_much_subdivision_is_refused_with_the_edit) {
+  LookDocument document = make_look_document(small_gltf());
+  document.assets->meshes[0].triangles.resize(kMostDisplacedTriangles / 4096 + 1, {0, 1, 2});
+  SceneState state(std::move(document), Camera(), small_pyramids());
+  const auto displace = [&](const char* subdivide) {
+    return message_of([&] {
+      (void)apply_json(state, std::string(R"([{"op": "add", "path": "/nodes/Sphere/extras", "value": {"relook":
+          {"displacement": {"texture": "Marble", "subdivide": )") +
+                                  subdivide + "}}}}]");
+    });
+  };
+  EXPECT_EQ(displace("5"), "");
+  EXPECT_EQ(displace("6"), "j.json: /edit/0/value/relook/displacement/subdivide: this makes too many triangles");
+  EXPECT_EQ(displace("7"), "j.json: /edit/0/value/relook/displacement/subdivide: 7 is above 6");
 }
 
 }  // namespace

@@ -82,7 +82,11 @@ std::vector<Row> color_rows() {
       row("shininess", set("/materials/Matte/extras/relook/shininess", 12)),
       row("unlit", set("/materials/Matte/extras/relook/model", "unlit")),
       row("back to metallic-roughness", set("/materials/Matte/extras/relook/model", "metallic-roughness")),
-      row("nothing at all", set("/lights/Lamp/intensity", 40)),
+      row("another material and a light at once", set("/meshes/Ball/primitives/0/material", "Ground"),
+          set("/lights/Lamp/intensity", 45)),
+      row("another material and ambient light at once", set("/meshes/Ball/primitives/0/material", "Matte"),
+          set("/scene/extras/relook/ambient", {0.1, 0.2, 0.1})),
+      row("nothing at all", set("/lights/Lamp/intensity", 45)),
   };
 }
 

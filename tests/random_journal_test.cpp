@@ -277,6 +277,9 @@ TEST_P(RandomJournal, UndoneToTheStartGivesTheFirstFrameBack) {
     changes.push_back(random_change(replayer.state().document().look, dice));
     replayer.step(edit_of_list(changes.back().forward), "random", ".");
     frames.push_back(replayer.image().frame);
+    ASSERT_EQ(different_pixels(frames.back(), rendered(compiled_again(replayer.state()).scene(), {samples, 5})).size(),
+              0U)
+        << "seed " << seed << " " << Json(changes.back().forward).dump();
   }
   for (std::size_t k = changes.size(); k-- > 0;) {
     replayer.step(edit_of_list(changes[k].backward), "random", ".");

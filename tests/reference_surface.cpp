@@ -98,8 +98,10 @@ Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) con
   Vec bitangent = s.n.cross(tangent);
   if (bitangent.dot(against_v) < 0) bitangent = -bitangent;
   const Imath::V4d texel = texture(s, which);
-  const Vec map((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, 2 * texel.z - 1);
-  return (tangent * map.x + bitangent * map.y + s.n * map.z).normalized();
+  const double side = s.inside ? -1 : 1;  // seen from behind, the relief is what it is from the front
+  const Vec map((2 * texel.x - 1) * scale * side, (2 * texel.y - 1) * scale * side, 2 * texel.z - 1);
+  const Vec bent = (tangent * map.x + bitangent * map.y + s.n * map.z).normalized();
+  return bent.dot(s.ng) > 0 ? bent : s.n;
 }
 
 void ReferenceTracer::read_material(Surface& s) const {

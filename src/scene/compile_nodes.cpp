@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "scene/compile_scene.h"
+#include "scene/displacement.h"
 #include "scene/look_schema.h"
 
 namespace relook {
@@ -178,6 +179,9 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
     const std::size_t instance_count = instances == nullptr ? 1 : instances->size();
     for (MeshId mesh_id : document_.assets->mesh_primitives.find(geometry)->second) {
       object.mesh = mesh_id;
+      if (object.displacement && displaced_triangles(document_.assets->meshes[mesh_id.index()], *object.displacement) >
+                                     kMostDisplacedTriangles)
+        fail(node_pointer(name) + "/extras/relook/displacement/subdivide", "this makes too many triangles");
       object.primitive = document_.assets->meshes[mesh_id.index()].primitive;
       const Json& primitive = mesh["primitives"][object.primitive];
       object.material = primitive.contains("material") ? index_.materials.at(primitive["material"].get<std::string>())

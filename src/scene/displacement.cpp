@@ -105,13 +105,14 @@ float height_at(const Mesh& mesh, const TextureSlot& slot, Mapping mapping, std:
 
 }  // namespace
 
+std::size_t displaced_triangles(const Mesh& mesh, const Displacement& displacement) {
+  return mesh.triangles.size() << static_cast<unsigned>(2 * displacement.subdivide);
+}
+
 Mesh displaced(const Mesh& mesh, const Displacement& displacement) {
+  require(displaced_triangles(mesh, displacement) <= kMostDisplacedTriangles, "the compiler limits subdivision");
   Mesh result = mesh;
-  for (std::int32_t round = 0; round < displacement.subdivide; ++round) {
-    if (result.triangles.size() * 4 > kMostDisplacedTriangles)
-      throw InputError(mesh.name, "", "displacement with this much subdivision makes too many triangles");
-    subdivide(result);
-  }
+  for (std::int32_t round = 0; round < displacement.subdivide; ++round) subdivide(result);
   const std::vector<std::uint32_t> weld = welded(result.positions);
   const bool is_smooth = !result.normals.empty();
   const std::vector<Normal> along = is_smooth ? result.normals : averaged_normals(result, weld);

@@ -5,10 +5,13 @@
 
 namespace relook {
 
+inline constexpr std::size_t kMostDisplacedTriangles = std::size_t{1} << 24;
+/// How many triangles displacement makes of a mesh: more than kMostDisplacedTriangles is refused by the compiler.
+[[nodiscard]] std::size_t displaced_triangles(const Mesh& mesh, const Displacement& displacement);
+
 /// `mesh` subdivided and displaced, with fresh normals and bounds. The same bits on every machine. A mesh without
 /// normals is displaced along averaged normals, so that no cracks open, and stays flat-shaded.
-/// Throws InputError when subdivision would make more than kMostDisplacedTriangles.
-inline constexpr std::size_t kMostDisplacedTriangles = std::size_t{1} << 24;
+/// Requires: displaced_triangles() within its limit.
 [[nodiscard]] Mesh displaced(const Mesh& mesh, const Displacement& displacement);
 
 }  // namespace relook

@@ -123,7 +123,9 @@ struct Tracer::Impl {
   };
   std::unordered_map<const Mesh*, BottomLevel> bottom_levels;
 
-  Impl() : device(rtcNewDevice(nullptr)) { require(device != nullptr, "Embree gave no device"); }
+  Impl() : device(rtcNewDevice(nullptr)) {
+    if (device == nullptr) throw std::bad_alloc();
+  }
   ~Impl() {
     for (auto& [mesh, level] : bottom_levels) rtcReleaseScene(level.scene);
     rtcReleaseDevice(device);
