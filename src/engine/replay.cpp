@@ -127,14 +127,14 @@ struct Replayer::Impl {
 
   [[nodiscard]] bool depends(std::span<const std::uint32_t> path, const ColorChange& colors) {
     const Scene& scene = state.scene();
-    if (!colors.lights.empty() || colors.ambient || colors.environment) return reaches_any_program(path, colors);
     const std::vector<ObjectId> objects = objects_of(path);
     const auto is_reassigned = [&](ObjectId id) {
       return std::ranges::find(colors.reassigned, id) != colors.reassigned.end();
     };
     if (!colors.reassigned.empty() && std::ranges::any_of(objects, is_reassigned)) return true;
+    const bool is_global = !colors.lights.empty() || colors.ambient || colors.environment;
     const auto has_changed_material = [&](ObjectId id) { return colors.fields_of(scene.object(id).material) != 0; };
-    return std::ranges::any_of(objects, has_changed_material) && reaches_any_program(path, colors);
+    return (is_global || std::ranges::any_of(objects, has_changed_material)) && reaches_any_program(path, colors);
   }
 
   [[nodiscard]] bool reaches_any_program(std::span<const std::uint32_t> path, const ColorChange& colors) {

@@ -47,8 +47,8 @@ Camera framing_camera(const LookDocument& document, std::uint32_t width, std::ui
   constexpr double kVerticalDegrees = 35, kMargin = 1.04;
   Camera camera = blank_camera("auto", width, height);
   set_field_of_view(camera, kVerticalDegrees * std::numbers::pi / 180);
-  Box bounds = world_bounds(document);
-  if (bounds.isEmpty()) bounds = Box(Point(-1, -1, -1), Point(1, 1, 1));
+  const Box bounds = world_bounds(document);
+  if (bounds.isEmpty()) throw InputError(document.file, "", "the scene has no objects for --camera auto to frame");
   const Wide forward = Wide(-0.6, -0.42, -0.8).normalized();
   look_along(camera, forward, Wide(0, 1, 0));
   const Wide right(camera.right), up(camera.up), center(bounds.center());

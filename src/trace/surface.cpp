@@ -5,6 +5,7 @@
 
 #include "base/portable_math.h"
 #include "scene/procedural.h"
+#include "scene/texture_mapping.h"
 
 namespace relook {
 namespace {
@@ -62,42 +63,6 @@ float offset_of(const RayObject& object, const std::array<std::uint32_t, 3>& tri
   return largest * kUlps;
 }
 
-Mapping effective_mapping(const Mesh& mesh, const TextureSlot& slot) {
-  if (slot.mapping != Mapping::uv || !mesh.uv[slot.texcoord].empty()) return slot.mapping;
-  return slot.kind == TextureKind::procedural ? Mapping::solid : Mapping::planar;
-}
-
-/// Coordinates in [0, 1] over the mesh's bounds, axis `axis` last.
-Point bounds_coordinates(const Mesh& mesh, const Point& local, int axis) {
-  const Point size = mesh.bounds.size();
-  Point unit;
-  for (int i = 0; i < 3; ++i) unit[i] = size[i] > 0 ? (local[i] - mesh.bounds.min[i]) / size[i] : 0.5F;
-  return Point(unit[(axis + 1) % 3], unit[(axis + 2) % 3], unit[axis]);
-}
-
-Point project(const Mesh& mesh, const Point& local, Mapping mapping, int axis) {
-  const Point unit = bounds_coordinates(mesh, local, axis);
-  if (mapping == Mapping::planar) return Point(unit.x, unit.y, 0);
-  const Direction centred = unit * 2.0F - Point(1, 1, 1);
-  const float around = portable_atan2_turns(centred.y, centred.x) + 0.5F;
-  if (mapping == Mapping::cylindrical) return Point(around, 1.0F - unit.z, 0);
-  const float length = std::sqrt(centred.dot(centred));
-  return Point(around, 0.5F - 2.0F * portable_asin_turns(length > 0 ? centred.z / length : 0), 0);
-}
-
-Point vertex_coordinates(const Mesh& mesh, const TextureSlot& slot, Mapping mapping, std::uint32_t vertex) {
-  if (mapping == Mapping::uv) return Point(mesh.uv[slot.texcoord][vertex].x, mesh.uv[slot.texcoord][vertex].y, 0);
-  return project(mesh, mesh.positions[vertex], mapping, slot.axis);
-}
-
-Uv transformed(const TextureSlot& slot, const Point& p) {
-  // KHR_texture_transform: scale, then rotate counter-clockwise, then move.
-  const float c = portable_sin_turns(slot.rotation * 0.15915494F + 0.25F),
-              s = portable_sin_turns(slot.rotation * 0.15915494F);
-  const float x = p.x * slot.scale.x, y = p.y * slot.scale.y;
-  return Uv(c * x + s * y + slot.offset.x, -s * x + c * y + slot.offset.y);
-}
-
 }  // namespace
 
 SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction direction) {
@@ -138,7 +103,7 @@ TextureCoordinates texture_coordinates(const RayObject& object, const Hit& hit, 
   const float world_area = std::sqrt(cross.dot(cross));
   const float texture_area = std::fabs(b.x * c.y - b.y * c.x);
   TextureCoordinates at;
-  at.position = mapping == Mapping::uv ? a + b * hit.u + c * hit.v : project(mesh, local, mapping, slot.axis);
+  at.position = mapping == Mapping::uv ? a + b * hit.u + c * hit.v : projected_coordinates(mesh, local, mapping, slot.axis);
   at.area_ratio = world_area > 0 ? texture_area / world_area : 0;
   return at;
 }
@@ -146,14 +111,14 @@ TextureCoordinates texture_coordinates(const RayObject& object, const Hit& hit, 
 Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
   if (slot.kind == TextureKind::procedural) {
     if (slot.mapping == Mapping::solid || at.area_ratio == 0) return evaluate(slot.procedural, at.position);
-    const Uv uv = transformed(slot, at.position);
+    const Uv uv = transformed_uv(slot, at.position);
     return evaluate(slot.procedural, Point(uv.x, uv.y, 0));
   }
   const auto& base = slot.pyramid->levels.front();
   const float texels = static_cast<float>(base.width) * static_cast<float>(base.height) *
                        std::fabs(slot.scale.x * slot.scale.y) * at.area_ratio;
   const float level = 0.5F * portable_log2(texels * footprint * footprint);
-  return sample(*slot.pyramid, transformed(slot, at.position), level, slot.wrap_s, slot.wrap_t, slot.nearest);
+  return sample(*slot.pyramid, transformed_uv(slot, at.position), level, slot.wrap_s, slot.wrap_t, slot.nearest);
 }
 
 TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const SurfacePoint& point,
