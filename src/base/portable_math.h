@@ -10,13 +10,13 @@
 namespace relook {
 
 /// Largest integer not above x, for |x| < 2^31.
-[[nodiscard]] inline float portable_floor(float x) {
+[[nodiscard, gnu::always_inline]] inline float portable_floor(float x) {
   const float truncated = static_cast<float>(static_cast<std::int32_t>(x));
   return truncated > x ? truncated - 1.0F : truncated;
 }
 
 /// 2^x; 0 below -126, 2^127 above 127.
-[[nodiscard]] inline float portable_exp2(float x) {
+[[nodiscard, gnu::always_inline]] inline float portable_exp2(float x) {
   const float clamped = x < -126.0F ? -126.0F : (x > 127.0F ? 127.0F : x);
   const float whole = portable_floor(clamped);
   const float f = clamped - whole;
@@ -34,7 +34,7 @@ namespace relook {
 }
 
 /// log2(x) for finite x > 0; -127 for x <= 0 and subnormal x.
-[[nodiscard]] inline float portable_log2(float x) {
+[[nodiscard, gnu::always_inline]] inline float portable_log2(float x) {
   const float safe = x < 1.17549435e-38F ? 1.17549435e-38F : x;
   const std::int32_t bits = std::bit_cast<std::int32_t>(safe);
   const std::int32_t exponent = (bits - 0x3F3504F3) >> 23;  // mantissa in [sqrt(1/2), sqrt(2))
@@ -52,16 +52,16 @@ namespace relook {
 }
 
 /// x^y for x >= 0; 0^0 = 1, 0^y = 0.
-[[nodiscard]] inline float portable_pow(float x, float y) {
+[[nodiscard, gnu::always_inline]] inline float portable_pow(float x, float y) {
   const float power = portable_exp2(y * portable_log2(x));
   return y == 0.0F ? 1.0F : (x <= 0.0F ? 0.0F : power);
 }
 
 /// exp(x)
-[[nodiscard]] inline float portable_exp(float x) { return portable_exp2(x * 1.44269504F); }
+[[nodiscard, gnu::always_inline]] inline float portable_exp(float x) { return portable_exp2(x * 1.44269504F); }
 
 /// sin(2 pi x), for |x| < 2^31.
-[[nodiscard]] inline float portable_sin_turns(float x) {
+[[nodiscard, gnu::always_inline]] inline float portable_sin_turns(float x) {
   const float f = x - portable_floor(x + 0.5F);  // [-1/2, 1/2]
   const float folded = f > 0.25F ? 0.5F - f : (f < -0.25F ? -0.5F - f : f);
   const float a = folded * 6.28318531F;  // [-pi/2, pi/2]
@@ -76,7 +76,7 @@ namespace relook {
 }
 
 /// atan(y / x) in the right quadrant, in turns: [-1/2, 1/2]; 0 for (0, 0).
-[[nodiscard]] inline float portable_atan2_turns(float y, float x) {
+[[nodiscard, gnu::always_inline]] inline float portable_atan2_turns(float y, float x) {
   const float ax = std::fabs(x), ay = std::fabs(y);
   const float large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
   const float ratio = large > 0.0F ? small / large : 0.0F;  // [0, 1]
@@ -97,7 +97,7 @@ namespace relook {
 }
 
 /// asin(x) in turns, for |x| <= 1 (clamped): [-1/4, 1/4].
-[[nodiscard]] inline float portable_asin_turns(float x) {
+[[nodiscard, gnu::always_inline]] inline float portable_asin_turns(float x) {
   const float clamped = x < -1.0F ? -1.0F : (x > 1.0F ? 1.0F : x);
   return portable_atan2_turns(clamped, std::sqrt((1.0F - clamped) * (1.0F + clamped)));
 }

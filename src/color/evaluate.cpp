@@ -5,17 +5,11 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "base/vector_clones.h"
 #include "color/gather.h"
 #include "color/sheen_albedo.h"
+#include "scene/procedural.h"
 #include "trace/surface.h"
-
-// One function body, compiled for several instruction sets: lane-wise IEEE arithmetic gives the same bits on all.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define RELOOK_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define RELOOK_VECTOR_CLONES
-#endif
 
 namespace relook {
 namespace {
@@ -103,15 +97,27 @@ class Run {
   }
 
   void run(std::span<const std::uint32_t> indices) {
+    const Batch batch{scene_, block_, are_filters_, indices};
     for (const auto& step : program_.varying) {
-      if (step.op == Op::input)
-        gather(step.payload, program_.material, scene_, block_, are_filters_, indices, colors_, r_[step.out]);
-      else if (step.op == Op::texture)
-        look_up(step, indices.size());
-      else if (step.op == Op::environment_map)
-        look_around(step, indices.size());
-      else
-        compute(step);
+      switch (step.op) {
+        case Op::input:
+          gather(step.payload, batch, colors_, r_[step.out]);
+          break;
+        case Op::coordinates:
+          gather_coordinates(slot_of(step), batch, &r_[step.out]);
+          break;
+        case Op::tangent_frame:
+          gather_tangent_frames(slot_of(step), batch, &r_[step.out]);
+          break;
+        case Op::texture:
+          look_up(step, indices.size());
+          break;
+        case Op::environment_map:
+          look_around(step, indices.size());
+          break;
+        default:
+          compute(step);
+      }
     }
     auto& out = are_filters_ ? colors_.filters : colors_.nodes;
     const auto& [red, green, blue, alpha] = program_.result;
@@ -131,14 +137,31 @@ class Run {
   void store(std::uint16_t first, std::size_t lane, const Rgba& value) {
     for (int channel = 0; channel < 4; ++channel) r_[static_cast<std::size_t>(first + channel)][lane] = value[channel];
   }
+  [[nodiscard]] const TextureSlot& slot_of(const ColorProgram::Step& step) const {
+    return scene_.scene().material(program_.material).slot(static_cast<Slot>(step.payload));
+  }
   void look_up(const ColorProgram::Step& step, std::size_t lanes) {
-    const TextureSlot& slot = scene_.scene().material(program_.material).slot(static_cast<Slot>(step.payload));
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      TextureCoordinates at;
-      at.position = Point(r_[step.in[0]][lane], r_[step.in[1]][lane], r_[step.in[2]][lane]);
-      at.area_ratio = r_[step.in[3]][lane];
-      store(step.out, lane, texture_value(slot, at, r_[step.in[4]][lane]));
+    const TextureSlot& slot = slot_of(step);
+    if (slot.kind == TextureKind::procedural) {
+      look_up_procedural(step, slot, lanes);
+      return;
     }
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      store(step.out, lane, texture_value(slot, coordinates(step, lane), r_[step.in[4]][lane]));
+  }
+  void look_up_procedural(const ColorProgram::Step& step, const TextureSlot& slot, std::size_t lanes) {
+    std::array<float, kLanes> x{}, y{}, z{}, weight;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const Point at = procedural_position(slot, coordinates(step, lane));
+      x[lane] = at.x;
+      y[lane] = at.y;
+      z[lane] = at.z;
+    }
+    procedural_weights(slot.procedural, x, y, z, weight);
+    for (std::size_t lane = 0; lane < lanes; ++lane) store(step.out, lane, mixed(slot.procedural, weight[lane]));
+  }
+  [[nodiscard]] TextureCoordinates coordinates(const ColorProgram::Step& step, std::size_t lane) const {
+    return {Point(r_[step.in[0]][lane], r_[step.in[1]][lane], r_[step.in[2]][lane]), r_[step.in[3]][lane]};
   }
   void look_around(const ColorProgram::Step& step, std::size_t lanes) {
     for (std::size_t lane = 0; lane < lanes; ++lane) {

@@ -5,99 +5,81 @@
 namespace relook {
 namespace {
 
-/// What nodes and filters have in common.
-struct HitView {
-  const RayObject& object;
-  const Hit& hit;
-  const SurfacePoint& point;
-  float footprint;
-};
-
-HitView view_of(const RayScene& scene, const RayNode& node) {
-  return {scene.object(node.object), node.hit, node.point, node.footprint};
-}
-HitView view_of(const RayScene& scene, const FilterNode& filter) {
-  return {scene.object(filter.object), filter.hit, filter.point, filter.footprint};
+/// Calls read(lane, node or filter) for every lane.
+template <class Read>
+void for_each_lane(const Batch& batch, const Read& read) {
+  const std::span<const std::uint32_t> indices = batch.indices;
+  if (batch.are_filters)
+    for (std::size_t lane = 0; lane < indices.size(); ++lane) read(lane, batch.block.filters[indices[lane]]);
+  else
+    for (std::size_t lane = 0; lane < indices.size(); ++lane) read(lane, batch.block.nodes[indices[lane]]);
 }
 
-/// Inputs that nodes and filters share.
-float surface_input(Input input, std::uint32_t detail, const Material& material, const HitView& view) {
-  const int axis = static_cast<int>(detail & 15U);
-  const auto slot = static_cast<Slot>(detail >> 4);
-  switch (input) {
-    case Input::position:
-      return view.point.position[axis];
-    case Input::normal:
-      return view.point.shading[axis];
-    case Input::geometric:
-      return view.point.geometric[axis];
-    case Input::footprint:
-      return view.footprint;
-    case Input::vertex_color:
-      return vertex_color(*view.object.mesh, view.hit)[axis];
-    case Input::tangent:
-      return tangent_frame(view.object, view.hit, view.point, material.slot(slot)).tangent[axis];
-    case Input::bitangent:
-      return tangent_frame(view.object, view.hit, view.point, material.slot(slot)).bitangent[axis];
-    case Input::coordinates: {
-      const TextureCoordinates at = texture_coordinates(view.object, view.hit, view.point.local, material.slot(slot));
-      return axis == 3 ? at.area_ratio : at.position[axis];
-    }
-    default:
-      return 0;
-  }
+/// Fills a column from nodes, which alone have this input.
+template <class Read>
+void from_nodes(const Batch& batch, Column& out, const Read& read) {
+  for (std::size_t lane = 0; lane < batch.indices.size(); ++lane)
+    out[lane] = read(batch.block.nodes[batch.indices[lane]]);
 }
 
-float tint(const TreeBlock& block, const RayNode& node, std::uint32_t detail, const BlockColors& colors) {
-  const LightLink& link = block.lights[node.first_light + (detail >> 4)];
+/// The product of the filters between a node and a light.
+float tint(const TreeBlock& block, const RayNode& node, std::uint32_t light, int channel, const BlockColors& colors) {
+  const LightLink& link = block.lights[node.first_light + light];
   float product = 1;
-  for (std::uint32_t f = 0; f < link.filters; ++f)
-    product *= colors.filters[link.first_filter + f][static_cast<int>(detail & 15U)];
+  for (std::uint32_t f = 0; f < link.filters; ++f) product *= colors.filters[link.first_filter + f][channel];
   return product;
-}
-
-float node_input(Input input, std::uint32_t detail, const TreeBlock& block, const RayNode& node,
-                 const BlockColors& colors) {
-  const int channel = static_cast<int>(detail & 15U);
-  switch (input) {
-    case Input::view:
-      return -node.ray.direction[channel];
-    case Input::length:
-      return node.length;
-    case Input::child:
-      return colors.nodes[node.child[detail >> 4]][channel];
-    case Input::child_length:
-      return block.nodes[node.child[detail & 15U]].length;
-    case Input::tint:
-      return tint(block, node, detail, colors);
-    default:
-      return 0;
-  }
-}
-
-bool belongs_to_surface(Input input) {
-  return input == Input::position || input == Input::normal || input == Input::geometric || input == Input::footprint ||
-         input == Input::vertex_color || input == Input::tangent || input == Input::bitangent ||
-         input == Input::coordinates;
 }
 
 }  // namespace
 
-void gather(std::uint32_t payload, MaterialId material, const RayScene& scene, const TreeBlock& block, bool are_filters,
-            std::span<const std::uint32_t> indices, const BlockColors& colors, Column& out) {
-  const auto input = static_cast<Input>(payload & 0xFFU);
+void gather(std::uint32_t payload, const Batch& batch, const BlockColors& colors, Column& out) {
   const std::uint32_t detail = payload >> 8;
-  if (belongs_to_surface(input)) {
-    const Material& m = scene.scene().material(material);
-    for (std::size_t lane = 0; lane < indices.size(); ++lane)
-      out[lane] = are_filters ? surface_input(input, detail, m, view_of(scene, block.filters[indices[lane]]))
-                              : surface_input(input, detail, m, view_of(scene, block.nodes[indices[lane]]));
-  } else if (are_filters) {
-    for (std::size_t lane = 0; lane < indices.size(); ++lane) out[lane] = block.filters[indices[lane]].length_inside;
-  } else {
-    for (std::size_t lane = 0; lane < indices.size(); ++lane)
-      out[lane] = node_input(input, detail, block, block.nodes[indices[lane]], colors);
+  const int axis = static_cast<int>(detail & 15U);
+  const std::uint32_t which = detail >> 4;
+  switch (static_cast<Input>(payload & 0xFFU)) {
+    case Input::position:
+      return for_each_lane(batch, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.position[axis]; });
+    case Input::normal:
+      return for_each_lane(batch, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.shading[axis]; });
+    case Input::geometric:
+      return for_each_lane(batch, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.geometric[axis]; });
+    case Input::footprint:
+      return for_each_lane(batch, [&](std::size_t lane, const auto& hit) { out[lane] = hit.footprint; });
+    case Input::vertex_color:
+      return for_each_lane(batch, [&](std::size_t lane, const auto& hit) {
+        out[lane] = vertex_color(*batch.scene.object(hit.object).mesh, hit.hit)[axis];
+      });
+    case Input::length_inside:
+      for (std::size_t lane = 0; lane < batch.indices.size(); ++lane)
+        out[lane] = batch.block.filters[batch.indices[lane]].length_inside;
+      return;
+    case Input::view:
+      return from_nodes(batch, out, [&](const RayNode& node) { return -node.ray.direction[axis]; });
+    case Input::child:
+      return from_nodes(batch, out, [&](const RayNode& node) { return colors.nodes[node.child[which]][axis]; });
+    case Input::child_length:
+      return from_nodes(batch, out, [&](const RayNode& node) { return batch.block.nodes[node.child[detail]].length; });
+    case Input::tint:
+      return from_nodes(batch, out, [&](const RayNode& node) { return tint(batch.block, node, which, axis, colors); });
   }
+}
+
+void gather_coordinates(const TextureSlot& slot, const Batch& batch, Column* out) {
+  for_each_lane(batch, [&](std::size_t lane, const auto& hit) {
+    const TextureCoordinates at = texture_coordinates(batch.scene.object(hit.object), hit.hit, hit.point.local, slot);
+    for (int axis = 0; axis < 3; ++axis) out[axis][lane] = at.position[axis];
+    out[3][lane] = at.area_ratio;
+  });
+}
+
+void gather_tangent_frames(const TextureSlot& slot, const Batch& batch, Column* out) {
+  for_each_lane(batch, [&](std::size_t lane, const auto& hit) {
+    const TangentFrame frame = tangent_frame(batch.scene.object(hit.object), hit.hit, hit.point, slot);
+    for (int axis = 0; axis < 3; ++axis) {
+      out[axis][lane] = frame.tangent[axis];
+      out[axis + 3][lane] = frame.bitangent[axis];
+    }
+  });
 }
 
 }  // namespace relook

@@ -6,8 +6,19 @@
 
 namespace relook {
 
-/// Fills out[0 .. indices.size()) with input `payload` (Input | detail << 8) of the nodes or filters `indices`.
-void gather(std::uint32_t payload, MaterialId material, const RayScene& scene, const TreeBlock& block, bool are_filters,
-            std::span<const std::uint32_t> indices, const BlockColors& colors, Column& out);
+/// Some nodes or filters of a block.
+struct Batch {
+  const RayScene& scene;
+  const TreeBlock& block;
+  bool are_filters = false;
+  std::span<const std::uint32_t> indices;  // at most kLanes
+};
+
+/// Fills out[lane] with an input (payload: Input | detail << 8).
+void gather(std::uint32_t payload, const Batch& batch, const BlockColors& colors, Column& out);
+/// Op::coordinates: four columns.
+void gather_coordinates(const TextureSlot& slot, const Batch& batch, Column* out);
+/// Op::tangent_frame: six columns.
+void gather_tangent_frames(const TextureSlot& slot, const Batch& batch, Column* out);
 
 }  // namespace relook

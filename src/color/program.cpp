@@ -18,6 +18,8 @@ unsigned operand_count(Op op) {
     case Op::ambient:
     case Op::environment:
     case Op::input:
+    case Op::coordinates:
+    case Op::tangent_frame:
       return 0;
     case Op::sqrt:
     case Op::exp2:
@@ -60,9 +62,14 @@ float folded(Op op, float a, float b) {
   }
 }
 
-bool is_lookup(Op op) { return op == Op::texture || op == Op::environment_map; }
+/// Number of registers that an instruction writes.
+unsigned result_count(Op op) {
+  if (op == Op::tangent_frame) return 6;
+  return op == Op::coordinates || op == Op::texture || op == Op::environment_map ? 4 : 1;
+}
+bool is_lookup(Op op) { return result_count(op) > 1; }
 
-/// Gives registers to values in order of first use and takes them back after the last. A lookup takes four in a row.
+/// Gives registers to values in order of first use and takes them back after the last. A lookup takes several in a row.
 class RegisterFile {
  public:
   std::uint16_t take(unsigned count) {
@@ -139,11 +146,16 @@ Value ExpressionBuilder::apply(Op op, Value a, Value b, Value c) {
 
 Value ExpressionBuilder::texture(Slot slot) {
   static_cast<void>(note(mask_of(slot)));
-  const unsigned detail = static_cast<unsigned>(slot) << 4;
+  const Value at = emit({Op::coordinates, static_cast<std::uint32_t>(slot), {}});
   Instruction lookup{Op::texture, static_cast<std::uint32_t>(slot), {}};
-  for (unsigned axis = 0; axis < 4; ++axis) lookup.operands[axis] = input(Input::coordinates, axis | detail);
+  for (unsigned k = 0; k < 4; ++k) lookup.operands[k] = channel(at, k);
   lookup.operands[4] = input(Input::footprint);
   return emit(lookup);
+}
+
+Value ExpressionBuilder::tangent_frame(Slot slot) {
+  static_cast<void>(note(mask_of(slot)));
+  return emit({Op::tangent_frame, static_cast<std::uint32_t>(slot), {}});
 }
 
 Value ExpressionBuilder::environment_map(Value x, Value y, Value z) {
@@ -203,12 +215,12 @@ ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>
       if (code[i].op == Op::channel) {
         place[i] = static_cast<std::uint16_t>(place[code[i].operands[0]] + code[i].payload);
       } else {
-        place[i] = registers.take(is_lookup(code[i].op) ? 4 : 1);
+        place[i] = registers.take(result_count(code[i].op));
         program.varying.push_back(step_of(i));
       }
     }
     for (std::size_t ended : ends[i + 1])
-      for (unsigned k = 0; k < (is_lookup(code[ended].op) ? 4U : 1U); ++k)
+      for (unsigned k = 0; k < result_count(code[ended].op); ++k)
         registers.release(static_cast<std::uint16_t>(place[ended] + k));
   }
   program.registers = registers.size();

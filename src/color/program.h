@@ -32,10 +32,12 @@ enum class Op : std::uint8_t {
   max,
   if_positive,   // a > 0 ? b : c
   sheen_albedo,  // (cosine, roughness)
-  // lookups: four results in consecutive values (see `channel`)
-  texture,          // payload: slot; (x, y, z, area ratio, footprint)
-  environment_map,  // direction (x, y, z)
-  channel,          // payload: 1..3, of the lookup given as operand; channel 0 is the lookup itself
+  // lookups: several results in consecutive registers (see `channel`)
+  coordinates,      // payload: slot; per-sample constants: x, y, z, area ratio
+  tangent_frame,    // payload: slot; per-sample constants: tangent, bitangent
+  texture,          // payload: slot; (x, y, z, area ratio, footprint) to RGBA
+  environment_map,  // direction (x, y, z) to RGBA
+  channel,          // payload: which result of the lookup given as operand; result 0 is the lookup itself
 };
 
 /// Per-sample constants of a node, gathered from its hit.
@@ -43,13 +45,9 @@ enum class Input : std::uint8_t {
   position,
   normal,
   geometric,
-  view,  // detail: axis
-  tangent,
-  bitangent,     // detail: axis | slot << 4
+  view,          // these four: detail is the axis
   vertex_color,  // detail: channel
-  coordinates,   // detail: axis (3: area ratio) | slot << 4
   footprint,
-  length,
   length_inside,
   child,         // detail: channel | branch << 4
   child_length,  // detail: branch
@@ -85,8 +83,9 @@ class ExpressionBuilder {
   [[nodiscard]] Value environment(unsigned component);
   [[nodiscard]] Value input(Input input, unsigned detail = 0);
   [[nodiscard]] Value apply(Op op, Value a, Value b = 0, Value c = 0);
-  /// First channel of a texture lookup; channel(lookup, k) gives the others.
+  /// First result of a lookup; channel(lookup, k) gives the others.
   [[nodiscard]] Value texture(Slot slot);
+  [[nodiscard]] Value tangent_frame(Slot slot);
   [[nodiscard]] Value environment_map(Value x, Value y, Value z);
   [[nodiscard]] Value channel(Value lookup, unsigned channel);
 

@@ -57,14 +57,13 @@ struct SignatureHash {
 /// Gives nodes dense program numbers within one block.
 class Programs {
  public:
-  Programs(const RayScene& scene, const TreeBlock& block, ProgramTable& table)
-      : scene_(scene), block_(block), table_(table) {}
+  Programs(const RayScene& scene, ProgramTable& table) : scene_(scene), table_(table) {}
 
-  std::uint32_t number(const RayNode& node) {
-    const Signature signature = signature_of(node);
-    return number(signature, [&] { return key_of(scene_, block_, node); });
+  std::uint32_t number(const TreeBlock& block, const RayNode& node) {
+    const Signature signature = signature_of(block, node);
+    return number(signature, [&] { return key_of(scene_, block, node); });
   }
-  std::uint32_t number(const FilterNode& filter) {
+  std::uint32_t number(const TreeBlock&, const FilterNode& filter) {
     Signature signature{surface_bits(filter.object, filter.point.inside, 0) | kFilterBit, 0};
     return number(signature, [&] {
       NodeKey key = filter_key(scene_, filter.object);
@@ -83,13 +82,13 @@ class Programs {
     return std::uint64_t{scene_.scene().object(id).material.index()} << 16 | children << 8 | (inside ? 1U : 0U) |
            (object.mesh->colors.empty() ? 0U : 2U) | (object.optics.volume && inside ? 4U : 0U) | 8U;
   }
-  [[nodiscard]] Signature signature_of(const RayNode& node) const {
+  [[nodiscard]] Signature signature_of(const TreeBlock& block, const RayNode& node) const {
     if (node.object.is_none()) return {};
     std::uint64_t children = 0;
     for (std::size_t b = 0; b < kBranches; ++b) children |= std::uint64_t{node.child[b] != kNoNode} << b;
     Signature signature{surface_bits(node.object, node.point.inside, children), 0};
     const std::size_t lights = scene_.scene().light_order.size();
-    const LightLink* links = block_.lights.data() + node.first_light;
+    const LightLink* links = block.lights.data() + node.first_light;
     for (std::size_t light = 0; light < lights; ++light) {
       // Only how a light reaches the node counts. More than 32 lights do not fit two bits each: mix.
       if (light > 0 && light % 32 == 0) signature.lights *= 0x9FB21C651E98DF25ULL;
@@ -110,7 +109,6 @@ class Programs {
   }
 
   const RayScene& scene_;
-  const TreeBlock& block_;
   ProgramTable& table_;
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
   std::vector<const ColorProgram*> programs_;
@@ -118,18 +116,26 @@ class Programs {
   std::uint32_t last_number_ = 0;
 };
 
-/// Evaluates runs of equal batch numbers: `batch_of(i)` in [0, batches) for each i in [0, count), in increasing order.
-template <class BatchOf, class Run>
-void for_each_batch(std::size_t count, std::size_t batches, const BatchOf& batch_of, const Run& run) {
-  std::vector<std::uint32_t> first(batches + 1, 0);
-  for (std::size_t i = 0; i < count; ++i) ++first[batch_of(i) + 1];
-  for (std::size_t b = 0; b < batches; ++b) first[b + 1] += first[b];
-  std::vector<std::uint32_t> sorted(count);
-  std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-  for (std::size_t i = 0; i < count; ++i) sorted[next[batch_of(i)]++] = static_cast<std::uint32_t>(i);
-  for (std::size_t b = 0; b < batches; ++b)
-    if (first[b] != first[b + 1]) run(b, std::span(sorted).subspan(first[b], first[b + 1] - first[b]));
-}
+/// Indices sorted by batch, stable.
+class Batches {
+ public:
+  /// Calls run(batch, indices) for each batch that occurs, in increasing order. `batch_of`: of index i, below
+  /// `batches`.
+  template <class Run>
+  void for_each(std::span<const std::uint32_t> batch_of, std::size_t batches, const Run& run) {
+    first_.assign(batches + 1, 0);
+    for (std::uint32_t batch : batch_of) ++first_[batch + 1];
+    for (std::size_t b = 0; b < batches; ++b) first_[b + 1] += first_[b];
+    next_.assign(first_.begin(), first_.end() - 1);
+    sorted_.resize(batch_of.size());
+    for (std::size_t i = 0; i < batch_of.size(); ++i) sorted_[next_[batch_of[i]]++] = static_cast<std::uint32_t>(i);
+    for (std::size_t b = 0; b < batches; ++b)
+      if (first_[b] != first_[b + 1]) run(b, std::span(sorted_).subspan(first_[b], first_[b + 1] - first_[b]));
+  }
+
+ private:
+  std::vector<std::uint32_t> first_, next_, sorted_;
+};
 
 }  // namespace
 
@@ -153,38 +159,55 @@ void ProgramTable::forget_environment() {
 void ProgramTable::clear() { programs_.clear(); }
 std::size_t ProgramTable::size() const { return programs_.size(); }
 
-void shade(const RayScene& scene, const TreeBlock& block, std::span<const std::uint32_t> roots, ProgramTable& table,
-           std::span<Rgba> out) {
-  Programs programs(scene, block, table);
+struct Shader::Impl {
+  const RayScene& scene;
+  Programs programs;
   BlockColors colors;
-  colors.nodes.resize(block.nodes.size());
-  colors.filters.resize(block.filters.size());
   Scratch scratch;
-  if (!block.filters.empty()) {
-    std::vector<std::uint32_t> numbers(block.filters.size());
-    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = programs.number(block.filters[i]);
-    for_each_batch(
-        numbers.size(), programs.size(), [&](std::size_t i) { return numbers[i]; },
-        [&](std::size_t number, std::span<const std::uint32_t> indices) {
-          evaluate(programs.program(static_cast<std::uint32_t>(number)), scene, block, true, indices, colors, scratch);
-        });
+  Batches batches;
+  std::vector<std::uint32_t> batch_of;
+
+  Impl(const RayScene& s, ProgramTable& table) : scene(s), programs(s, table) {}
+
+  void run(const TreeBlock& block, bool are_filters, std::size_t batch, std::span<const std::uint32_t> indices) {
+    const auto number = static_cast<std::uint32_t>(batch % programs.size());
+    evaluate(programs.program(number), scene, block, are_filters, indices, colors, scratch);
   }
-  std::vector<std::uint32_t> numbers(block.nodes.size());
-  std::size_t generations = 0;
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    numbers[i] = programs.number(block.nodes[i]);
-    generations = std::max<std::size_t>(generations, block.nodes[i].ray.generation);
+
+  void shade_filters(const TreeBlock& block) {
+    colors.filters.resize(block.filters.size());
+    batch_of.clear();
+    for (const FilterNode& filter : block.filters) batch_of.push_back(programs.number(block, filter));
+    batches.for_each(batch_of, programs.size(), [&](std::size_t batch, std::span<const std::uint32_t> indices) {
+      run(block, true, batch, indices);
+    });
   }
-  // Deepest generation first.
-  const auto batch_of = [&](std::size_t i) {
-    return (generations - block.nodes[i].ray.generation) * programs.size() + numbers[i];
-  };
-  for_each_batch(numbers.size(), generations * programs.size(), batch_of,
-                 [&](std::size_t batch, std::span<const std::uint32_t> indices) {
-                   const auto number = static_cast<std::uint32_t>(batch % programs.size());
-                   evaluate(programs.program(number), scene, block, false, indices, colors, scratch);
-                 });
-  for (std::size_t k = 0; k < roots.size(); ++k) out[k] = colors.nodes[roots[k]];
+
+  /// Deepest generation first.
+  void shade_nodes(const TreeBlock& block) {
+    colors.nodes.resize(block.nodes.size());
+    batch_of.clear();
+    std::uint32_t generations = 0;
+    for (const RayNode& node : block.nodes) {
+      batch_of.push_back(programs.number(block, node));
+      generations = std::max<std::uint32_t>(generations, node.ray.generation);
+    }
+    const auto count = static_cast<std::uint32_t>(programs.size());
+    for (std::size_t i = 0; i < batch_of.size(); ++i)
+      batch_of[i] += (generations - block.nodes[i].ray.generation) * count;
+    batches.for_each(
+        batch_of, std::size_t{generations} * count,
+        [&](std::size_t batch, std::span<const std::uint32_t> indices) { run(block, false, batch, indices); });
+  }
+};
+
+Shader::Shader(const RayScene& scene, ProgramTable& programs) : impl_(std::make_unique<Impl>(scene, programs)) {}
+Shader::~Shader() = default;
+
+void Shader::shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::span<Rgba> out) {
+  if (!block.filters.empty()) impl_->shade_filters(block);
+  impl_->shade_nodes(block);
+  for (std::size_t k = 0; k < roots.size(); ++k) out[k] = impl_->colors.nodes[roots[k]];
 }
 
 void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,

@@ -29,9 +29,19 @@ class ProgramTable {
   std::map<NodeKey, std::unique_ptr<const ColorProgram>> programs_;
 };
 
-/// Colours of the samples in `block`: out[k] is that of the tree rooted at node roots[k].
-void shade(const RayScene& scene, const TreeBlock& block, std::span<const std::uint32_t> roots, ProgramTable& programs,
-           std::span<Rgba> out);
+/// Evaluates blocks of ray trees. Keeps its working memory and what it has looked up between calls; one per thread.
+class Shader {
+ public:
+  /// The scene and the table's programs must not change while the shader lives.
+  Shader(const RayScene& scene, ProgramTable& programs);
+  ~Shader();
+  /// Colours of the samples in `block`: out[k] is that of the tree rooted at node roots[k].
+  void shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::span<Rgba> out);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// The keys of all nodes and filters of a path, appended: with them the colours that an edit can change are found from
 /// paths alone. `lights`: the light order in which the path was recorded.

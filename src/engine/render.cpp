@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "color/shade.h"
 #include "engine/sampling.h"
 #include "trace/grow.h"
@@ -27,7 +28,7 @@ struct TileRecord {
 class TileRenderer {
  public:
   TileRenderer(const GrowScene& grow, const ViewOptions& view, ProgramTable& programs)
-      : grow_(grow), view_(view), primary_(grow.scene.scene().camera, view), programs_(programs) {}
+      : grow_(grow), view_(view), primary_(grow.scene.scene().camera, view), shader_(grow.scene, programs) {}
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
   void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
@@ -38,9 +39,10 @@ class TileRenderer {
       const std::uint32_t last = std::min(first + kChunkSamples, samples);
       block_.clear();
       roots_.clear();
-      for (std::uint32_t sample = first; sample < last; ++sample)
-        roots_.push_back(trace_tree(grow_, primary_.ray(rect, sample), sample, block_, counters));
-      shade(grow_.scene, block_, roots_, programs_, std::span(colors).subspan(first, last - first));
+      rays_.clear();
+      for (std::uint32_t sample = first; sample < last; ++sample) rays_.push_back(primary_.ray(rect, sample));
+      trace_trees(grow_, rays_, first, block_, roots_, counters);
+      shader_.shade(block_, roots_, std::span(colors).subspan(first, last - first));
       if (record != nullptr) keep(*record);
     }
   }
@@ -58,8 +60,9 @@ class TileRenderer {
   const GrowScene& grow_;
   const ViewOptions& view_;
   PrimaryRays primary_;
-  ProgramTable& programs_;
+  Shader shader_;
   TreeBlock block_;
+  std::vector<SpawnedRay> rays_;
   std::vector<std::uint32_t> roots_, words_;
 };
 
@@ -93,12 +96,14 @@ void render_tiles(const Scene& scene, Image& image, bool keep, RenderStats& stat
   std::vector<GrowCounters> counters(tiles);
   std::vector<TileRecord> records(keep ? tiles : 0);
   if (keep) image.sample_colors.resize(tiles);
+  Pool<TileRenderer> renderers;
   std::atomic<std::size_t> done = 0;
   std::mutex progress_mutex;
   parallel_for(tiles, [&](std::size_t tile) {
     const TileRect rect = tile_rect(tile, width, height);
     std::vector<Rgba> colors;
-    TileRenderer(grow, image.view, programs).render(rect, colors, keep ? &records[tile] : nullptr, counters[tile]);
+    const auto renderer = renderers.take([&] { return std::make_unique<TileRenderer>(grow, image.view, programs); });
+    renderer->render(rect, colors, keep ? &records[tile] : nullptr, counters[tile]);
     set_pixels(rect, colors, image.view.samples, image.frame);
     if (keep) image.sample_colors[tile] = std::move(colors);
     const std::size_t finished = ++done;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "base/pool.h"
 #include "color/shade.h"
 #include "engine/change.h"
 #include "engine/sampling.h"
@@ -167,19 +168,22 @@ struct Replayer::Impl {
     return tasks;
   }
 
-  void update_tile(std::size_t tile, const StepChange& change, const std::vector<PathTask>& tasks, TileUpdate& update) {
+  void update_tile(std::size_t tile, const StepChange& change, const std::vector<PathTask>& tasks,
+                   Pool<Shader>& shaders, TileUpdate& update) {
     const Frame& frame = image.frame;
     const TileRect rect = tile_rect(tile, frame.width, frame.height);
     const TileTrees& trees = image.trees[tile];
     const GrowScene grow{rays, &level, image.view.max_depth};
     const PrimaryRays primaries(state.scene().camera, image.view);
+    const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays, programs); });
     TreeBlock block;
     std::vector<std::uint32_t> roots, chunk;
     const auto flush = [&] {
+      if (roots.empty()) return;
       const std::size_t first = update.colors.size();
       update.shaded.insert(update.shaded.end(), chunk.begin(), chunk.end());
       update.colors.resize(first + chunk.size());
-      shade(rays, block, roots, programs, std::span(update.colors).subspan(first));
+      shader->shade(block, roots, std::span(update.colors).subspan(first));
       block.clear();
       roots.clear();
       chunk.clear();
@@ -306,7 +310,8 @@ struct Replayer::Impl {
       prepare_rays(change);
       watch.lap(result.seconds.test);
       std::vector<TileUpdate> updates(image.trees.size());
-      parallel_for(updates.size(), [&](std::size_t tile) { update_tile(tile, change, tasks, updates[tile]); });
+      Pool<Shader> shaders;
+      parallel_for(updates.size(), [&](std::size_t tile) { update_tile(tile, change, tasks, shaders, updates[tile]); });
       watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
       store(updates, change, result);
       watch.lap(result.seconds.evaluate);

@@ -1,6 +1,8 @@
 // Procedural solid textures (paper 2.1, 4.1.1): marble, wood, checker and noise as pure functions of a position and a
 // few parameters. The result always lies between color1 and color2, so parameters bound what a texture can reach.
 #pragma once
+#include <span>
+
 #include "base/math.h"
 #include "scene/material.h"
 
@@ -8,6 +10,12 @@ namespace relook {
 
 /// The texture's value at `position`, in the units of its coordinates (object-space metres, or uv with z = 0); alpha 1.
 [[nodiscard]] Rgba evaluate(const Procedural& texture, Point position);
+
+/// The same for many positions at once: the mixing weight of color2, in [0, 1], lane by lane. Spans of equal length.
+void procedural_weights(const Procedural& texture, std::span<const float> x, std::span<const float> y,
+                        std::span<const float> z, std::span<float> weight);
+/// The colour for a weight; alpha 1.
+[[nodiscard]] Rgba mixed(const Procedural& texture, float weight);
 
 /// Gradient noise in [-1, 1], 0 on the integer lattice, period 2^31 (K. Perlin, Improving Noise, 2002: its fade curve and
 /// gradients, with an integer hash for the permutation table).

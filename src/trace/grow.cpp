@@ -20,11 +20,10 @@ class Grower {
   Grower(const GrowScene& grow, std::uint32_t sample, TreeBlock& block) : g_(grow), sample_(sample), b_(block) {}
 
   std::uint32_t append(const SpawnedRay& ray, std::uint32_t parent) {
-    RayNode node;
+    RayNode& node = b_.nodes.emplace_back();
     node.parent = parent;
     node.sample = sample_;
     node.ray = ray;
-    b_.nodes.push_back(node);
     return static_cast<std::uint32_t>(b_.nodes.size() - 1);
   }
 
@@ -87,24 +86,29 @@ class Grower {
     set_filters(index, light, segment, filters_);
   }
 
-  void trace_lights(std::uint32_t index, GrowCounters& counters) {
+  /// Traces the shadow segments of all nodes from `first` on: apart from the rays, since like work in a row runs faster.
+  void trace_lights(std::uint32_t first, GrowCounters& counters) {
     ShadowSegment segment;
-    for (std::size_t light = 0; light < lights().size(); ++light)
-      if (gathers(index, light, segment)) trace_light(index, light, segment, counters);
+    for (std::uint32_t index = first; index < b_.nodes.size(); ++index) {
+      if (b_.nodes[index].object.is_none()) continue;
+      for (std::size_t light = 0; light < lights().size(); ++light)
+        if (gathers(index, light, segment)) trace_light(index, light, segment, counters);
+    }
   }
 
+  /// Appends a node and everything below it, traced, but for the lights.
   std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent, GrowCounters& counters) {
     const std::uint32_t index = append(ray, parent);
     ++counters.ray_updates;
-    const Meeting meeting = Tracer::intersect(*g_.level, {ray.origin, ray.direction});
-    if (!meeting.object.is_none()) trace_from(index, meeting.object, meeting.hit, counters);
+    trace_from(index, Tracer::intersect(*g_.level, {ray.origin, ray.direction}), counters);
     return index;
   }
 
-  /// Everything below a hit, traced.
-  void trace_from(std::uint32_t index, ObjectId object, const Hit& hit, GrowCounters& counters) {
-    set_hit(index, object, hit);
-    trace_lights(index, counters);
+  /// Everything below a node whose ray met `meeting`.
+  void trace_from(std::uint32_t index, const Meeting& meeting, GrowCounters& counters) {
+    if (meeting.object.is_none()) return;
+    set_hit(index, meeting.object, meeting.hit);
+    if (!g_.scene.object(meeting.object).optics.spawns()) return;
     for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }
 
@@ -186,6 +190,7 @@ class Expander {
       grower_.gathers(index, light, segment);
       grower_.set_filters(index, light, segment, grower_.filters_);
     }
+    if (!grower_.grow().scene.object(node.object()).optics.spawns()) return index;
     grower_.for_each_child(index, grower_.spawned(index),
                            [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
@@ -209,7 +214,7 @@ class Updater {
       // The selection is removed: what lies behind it shows (paper 2.2).
       skip_children(stored_, node);
       changed_ = true;
-      return grower_.trace(ray, parent, counters_);
+      return trace(ray, parent);
     }
     const std::uint32_t index = grower_.append(ray, parent);
     if (!node.is_miss()) grower_.set_hit(index, node.object(), *hits);
@@ -222,6 +227,12 @@ class Updater {
   [[nodiscard]] bool changed() const { return changed_; }
 
  private:
+  std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent) {
+    const std::uint32_t index = grower_.trace(ray, parent, counters_);
+    grower_.trace_lights(index, counters_);
+    return index;
+  }
+
   /// The ray test: does the selection, where it is now, come before what is stored? If so, regrows the node.
   bool test(std::uint32_t index, const PathNode& node) {
     TreeBlock& block = grower_.block();
@@ -261,7 +272,8 @@ class Updater {
     if (!node.is_miss()) block.lights.resize(block.nodes[index].first_light);
     skip_children(stored_, node);
     require(!meeting.object.is_none(), "a tested ray meets at least the selection");
-    grower_.trace_from(index, meeting.object, meeting.hit, counters_);
+    grower_.trace_from(index, meeting, counters_);
+    grower_.trace_lights(index, counters_);
     return true;
   }
 
@@ -380,7 +392,7 @@ class Updater {
       } else {
         if (is_stored) skip_tree(stored_);
         changed_ = true;
-        child = grower_.trace(ray, index, counters_);
+        child = trace(ray, index);
       }
       grower_.block().nodes[index].child[b] = child;
     }
@@ -397,9 +409,19 @@ class Updater {
 
 }  // namespace
 
-std::uint32_t trace_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, TreeBlock& block,
-                         GrowCounters& counters) {
-  return Grower(grow, sample, block).trace(primary, kNoNode, counters);
+void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, std::uint32_t first_sample,
+                 TreeBlock& block, std::vector<std::uint32_t>& roots, GrowCounters& counters) {
+  std::vector<Meeting> meetings;
+  meetings.reserve(primaries.size());
+  for (const SpawnedRay& ray : primaries) meetings.push_back(Tracer::intersect(*grow.level, {ray.origin, ray.direction}));
+  counters.ray_updates += primaries.size();
+  const auto first_node = static_cast<std::uint32_t>(block.nodes.size());
+  for (std::size_t k = 0; k < primaries.size(); ++k) {
+    Grower grower(grow, first_sample + static_cast<std::uint32_t>(k), block);
+    roots.push_back(grower.append(primaries[k], kNoNode));
+    grower.trace_from(roots.back(), meetings[k], counters);
+  }
+  Grower(grow, first_sample, block).trace_lights(first_node, counters);
 }
 
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,

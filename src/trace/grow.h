@@ -24,9 +24,9 @@ struct GrowScene {
   std::uint32_t max_depth = 6;
 };
 
-/// Appends the ray tree of one sample, traced. Returns the index of its root in `block`.
-std::uint32_t trace_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, TreeBlock& block,
-                         GrowCounters& counters);
+/// Appends the ray trees of consecutive samples, traced, and the indices of their roots.
+void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, std::uint32_t first_sample,
+                 TreeBlock& block, std::vector<std::uint32_t>& roots, GrowCounters& counters);
 
 /// A stored ray tree being walked.
 struct StoredTree {

@@ -32,6 +32,20 @@ float condition_number(const Transform& m, const Imath::M33f& cofactors, float d
   return condition < 1e6 ? static_cast<float>(std::max(condition, 1.0)) : 1e6F;  // singular ones too
 }
 
+/// Rounding errors of a hit follow the largest numbers added up on the way from object space to the world, anywhere on
+/// the object: near the origin of a large triangle they are as large as at its corners.
+float offset_of(const Transform& m, const Box& bounds) {
+  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    float sum = std::fabs(m[3][axis]);
+    for (int i = 0; i < 3; ++i)
+      sum += std::max(std::fabs(bounds.min[i]), std::fabs(bounds.max[i])) * std::fabs(m[i][axis]);
+    largest = std::max(largest, sum);
+  }
+  return largest * kUlps;
+}
+
 }  // namespace
 
 RayScene::RayScene(const Scene& scene) : scene_(&scene) {
@@ -71,6 +85,7 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
   ray_object.to_world = object.to_world;
   ray_object.normal_to_world = normal_matrix(object.to_world);
   const float det = determinant(object.to_world, ray_object.normal_to_world);
+  ray_object.offset = offset_of(object.to_world, ray_object.mesh->bounds);
   ray_object.flipped = det < 0;
   ray_object.condition = condition_number(object.to_world, ray_object.normal_to_world, det);
   ray_object.alive = object.alive;

@@ -17,7 +17,8 @@ struct RayObject {
   Transform to_world;
   Imath::M33f normal_to_world;  // inverse transpose of the linear part, not normalised
   float condition = 1;          // of the linear part: how much it stretches rounding errors, at least 1
-  bool flipped = false;         // negative determinant: counter-clockwise triangles are back faces
+  float offset = 0;      // metres along the normal that clear a hit of rounding errors
+  bool flipped = false;  // negative determinant: counter-clockwise triangles are back faces
   bool alive = false;
   std::uint64_t key = 0;  // orders coincident hits
   SurfaceOptics optics;

@@ -44,23 +44,13 @@ Direction scaled(const Direction& v) {
   return largest > 0 ? v * (1.0F / largest) : Direction(0, 0, 1);
 }
 
-/// Largest magnitude that is added up on the way from object space to a world coordinate.
-float magnitude(const Transform& m, const Point& local) {
-  float largest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    largest = std::max(largest, std::fabs(local.x * m[0][axis]) + std::fabs(local.y * m[1][axis]) +
-                                    std::fabs(local.z * m[2][axis]) + std::fabs(m[3][axis]));
-  return largest;
-}
-
-/// Rounding errors of a hit follow the size of its triangle's coordinates, not of its own: near the origin of a large
-/// triangle they are as large as anywhere else on it.
-float offset_of(const RayObject& object, const std::array<std::uint32_t, 3>& triangle) {
-  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place
-  float largest = 0;
-  for (std::uint32_t vertex : triangle)
-    largest = std::max(largest, magnitude(object.to_world, object.mesh->positions[vertex]));
-  return largest * kUlps;
+/// A normal taken to the world and to length 1; tiny and huge ones are scaled on the way, so that none loses its
+/// direction.
+inline Normal unit_normal(const Normal& n, const Imath::M33f& to_world, const Normal& otherwise) {
+  const Normal world = n * to_world;
+  const float length2 = world.dot(world);
+  if (length2 > 1e-24F && length2 < 1e24F) return world / std::sqrt(length2);
+  return unit_or(scaled(scaled(n) * to_world), otherwise);
 }
 
 }  // namespace
@@ -71,17 +61,16 @@ SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction di
   SurfacePoint point;
   point.local = interpolate(mesh.positions, triangle, hit);
   point.position = to_world(object.to_world, point.local);
-  point.offset = offset_of(object, triangle);
+  point.offset = object.offset;
   const Point& a = mesh.positions[triangle[0]];
   const Normal cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
-  Normal front = unit_or(scaled(scaled(cross) * object.normal_to_world), Normal(0, 0, 1));
+  Normal front = unit_normal(cross, object.normal_to_world, Normal(0, 0, 1));
   if (object.flipped) front = -front;
   point.inside = front.dot(direction) > 0;
   point.geometric = point.inside ? -front : front;
   point.shading = point.geometric;
   if (!mesh.normals.empty()) {
-    const Normal smooth = interpolate(mesh.normals, triangle, hit) * object.normal_to_world;
-    point.shading = unit_or(scaled(smooth), point.geometric);
+    point.shading = unit_normal(interpolate(mesh.normals, triangle, hit), object.normal_to_world, point.geometric);
     if (point.shading.dot(point.geometric) < 0) point.shading = -point.shading;
   }
   return point;
@@ -103,17 +92,20 @@ TextureCoordinates texture_coordinates(const RayObject& object, const Hit& hit, 
   const float world_area = std::sqrt(cross.dot(cross));
   const float texture_area = std::fabs(b.x * c.y - b.y * c.x);
   TextureCoordinates at;
-  at.position = mapping == Mapping::uv ? a + b * hit.u + c * hit.v : projected_coordinates(mesh, local, mapping, slot.axis);
+  at.position =
+      mapping == Mapping::uv ? a + b * hit.u + c * hit.v : projected_coordinates(mesh, local, mapping, slot.axis);
   at.area_ratio = world_area > 0 ? texture_area / world_area : 0;
   return at;
 }
 
+Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at) {
+  if (slot.mapping == Mapping::solid || at.area_ratio == 0) return at.position;
+  const Uv uv = transformed_uv(slot, at.position);
+  return Point(uv.x, uv.y, 0);
+}
+
 Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
-  if (slot.kind == TextureKind::procedural) {
-    if (slot.mapping == Mapping::solid || at.area_ratio == 0) return evaluate(slot.procedural, at.position);
-    const Uv uv = transformed_uv(slot, at.position);
-    return evaluate(slot.procedural, Point(uv.x, uv.y, 0));
-  }
+  if (slot.kind == TextureKind::procedural) return evaluate(slot.procedural, procedural_position(slot, at));
   const auto& base = slot.pyramid->levels.front();
   const float texels = static_cast<float>(base.width) * static_cast<float>(base.height) *
                        std::fabs(slot.scale.x * slot.scale.y) * at.area_ratio;

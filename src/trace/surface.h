@@ -32,6 +32,9 @@ struct TextureCoordinates {
 /// none.
 [[nodiscard]] Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint);
 
+/// Where a procedural texture is evaluated. Requires kind procedural.
+[[nodiscard]] Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at);
+
 /// The axes of a normal map at a hit (glTF 3.9.3), world space, for the front of the surface: unit vectors, or zero
 /// where the mesh gives none.
 struct TangentFrame {
