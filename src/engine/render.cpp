@@ -40,7 +40,7 @@ class TileRenderer {
       block_.clear();
       roots_.clear();
       rays_.clear();
-      for (std::uint32_t sample = first; sample < last; ++sample) rays_.push_back(primary_.ray(rect, sample));
+      primary_.append(rect, first, last, rays_);
       trace_trees(grow_, rays_, first, block_, roots_, counters);
       shader_.shade(block_, roots_, std::span(colors).subspan(first, last - first));
       if (record != nullptr) keep(*record);
@@ -75,8 +75,11 @@ void merge(TileRecord& record, PathTable& paths, TileTrees& trees) {
 }
 
 void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint32_t samples, Frame& frame) {
-  for (std::uint32_t pixel = 0; pixel < rect.pixels(); ++pixel)
-    frame.pixels[frame_index(rect, pixel, frame.width)] = pixel_color(&colors[std::size_t{pixel} * samples], samples);
+  const Rgba* color = colors.data();
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
+    Rgba* row = &frame.pixels[std::size_t{y} * frame.width];
+    for (std::uint32_t x = rect.x0; x < rect.x1; ++x, color += samples) row[x] = pixel_color(color, samples);
+  }
 }
 
 /// Renders every tile; `keep`: also the paths, trees and sample colours.

@@ -36,6 +36,33 @@ PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view) : camera
   for (std::uint32_t k = 0; k < view.samples; ++k) in_pixel_.push_back(position_in_pixel(k, view.samples));
 }
 
+SpawnedRay PrimaryRays::through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const {
+  const CameraRay ray =
+      camera_ray(camera_, static_cast<float>(x) + in_pixel_[k].x, static_cast<float>(y) + in_pixel_[k].y);
+  return {ray.origin, ray.direction, ray.width, ray.spread};
+}
+
+SpawnedRay PrimaryRays::ray(const TileRect& rect, std::uint32_t sample) const {
+  const auto samples = static_cast<std::uint32_t>(in_pixel_.size());
+  const std::uint32_t pixel = sample / samples, width = rect.x1 - rect.x0;
+  return through(rect.x0 + pixel % width, rect.y0 + pixel / width, sample % samples);
+}
+
+void PrimaryRays::append(const TileRect& rect, std::uint32_t first, std::uint32_t last,
+                         std::vector<SpawnedRay>& rays) const {
+  const auto samples = static_cast<std::uint32_t>(in_pixel_.size());
+  const std::uint32_t width = rect.x1 - rect.x0;
+  std::uint32_t k = first % samples, x = first / samples % width, y = first / samples / width;
+  for (std::uint32_t sample = first; sample < last; ++sample) {
+    rays.push_back(through(rect.x0 + x, rect.y0 + y, k));
+    if (++k < samples) continue;
+    k = 0;
+    if (++x < width) continue;
+    x = 0;
+    ++y;
+  }
+}
+
 Rgba pixel_color(const Rgba* samples, std::uint32_t count) {
   if (count == 1) return samples[0];
   Rgba sum = samples[0];

@@ -22,16 +22,13 @@ class PrimaryRays {
  public:
   PrimaryRays(const Camera& camera, const ViewOptions& view);
   /// That of sample `sample` of a tile.
-  [[nodiscard]] SpawnedRay ray(const TileRect& rect, std::uint32_t sample) const {
-    const auto samples = static_cast<std::uint32_t>(in_pixel_.size());
-    const std::uint32_t pixel = sample / samples, width = rect.x1 - rect.x0;
-    const Uv& at = in_pixel_[sample % samples];
-    const CameraRay camera_ray = relook::camera_ray(camera_, static_cast<float>(rect.x0 + pixel % width) + at.x,
-                                                    static_cast<float>(rect.y0 + pixel / width) + at.y);
-    return {camera_ray.origin, camera_ray.direction, camera_ray.width, camera_ray.spread};
-  }
+  [[nodiscard]] SpawnedRay ray(const TileRect& rect, std::uint32_t sample) const;
+  /// Those of samples [first, last) of a tile.
+  void append(const TileRect& rect, std::uint32_t first, std::uint32_t last, std::vector<SpawnedRay>& rays) const;
 
  private:
+  [[nodiscard]] SpawnedRay through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const;
+
   const Camera& camera_;
   std::vector<Uv> in_pixel_;  // positions of a pixel's samples, in [0, 1)
 };

@@ -179,8 +179,8 @@ CameraRay camera_ray(const Camera& camera, float x, float y) {
   const Direction offset = camera.right * across + camera.up * down;
   if (camera.orthographic) return {camera.eye + offset, camera.forward, 0, pixel};
   const Direction d = camera.forward + offset;
-  const float length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-  return {camera.eye, {d.x / length, d.y / length, d.z / length}, pixel, 0};
+  const float scale = 1.0F / std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  return {camera.eye, d * scale, pixel, 0};
 }
 
 }  // namespace relook
