@@ -27,12 +27,13 @@ void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--progress", raw.progress, "auto, plain, json or none");
 }
 
-void add_look_patch(CLI::App& verb, Arguments& arguments) {
-  verb.add_option("--look", arguments.view.look_patch, "JSON Patch (RFC 6902) applied to the look document first");
+CLI::Option* add_look_patch(CLI::App& verb, Arguments& arguments,
+                            const char* help = "JSON Patch (RFC 6902) applied to the look document first") {
+  return verb.add_option("--look", arguments.view.look_patch, help);
 }
 
-void add_lights(CLI::App& verb, RawTexts& raw) {
-  verb.add_option("--lights", raw.lights, "auto: add a key, a fill and a rim light")->check(CLI::IsMember({"auto"}));
+CLI::Option* add_lights(CLI::App& verb, RawTexts& raw, const char* help = "auto: add a key, a fill and a rim light") {
+  return verb.add_option("--lights", raw.lights, help)->check(CLI::IsMember({"auto"}));
 }
 
 void add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
@@ -97,8 +98,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_flag("--verify{100}", raw.verify, "Compare with a full render after each step; =PERCENT of the tiles");
   replay.add_flag("--baseline", arguments.baseline, "Measure one full render for the report");
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
-  add_look_patch(replay, arguments);
-  add_lights(replay, raw);
+  add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
+  add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");
   add_float(replay, arguments);
   add_structures(replay, arguments, raw);
 

@@ -31,8 +31,16 @@ std::size_t count(const Json& look, Section section) {
   return look.contains(key) ? look[key].size() : 0;
 }
 
+/// The document with the lights of --lights. Only these, and --camera itself, need a camera.
+LoadedDocument load_lit_document(const Arguments& arguments) {
+  const ViewArguments& view = arguments.view;
+  LoadedDocument loaded = load_document(arguments.inputs[0], view);
+  if (view.auto_lights || !view.camera.empty()) static_cast<void>(set_up_inspection(loaded, view));
+  return loaded;
+}
+
 void inspect_scene(const Arguments& arguments, Console& console) {
-  const LoadedDocument loaded = load_document(arguments.inputs[0], arguments.view);
+  const LoadedDocument loaded = load_lit_document(arguments);
   console.warn(loaded.warnings);
   const LookDocument& document = loaded.document;
   std::uint64_t triangles = 0;
@@ -96,14 +104,22 @@ void inspect_run(const Arguments& arguments, Console& console) {
 }
 
 /// The look document itself goes to stdout, whatever --json says; --quiet is for other verbs.
-void print_look(const Arguments& arguments, Kind kind) {
+void print_look(const Arguments& arguments, Kind kind, Console& console) {
   const std::string& input = arguments.inputs[0];
   if (kind != Kind::scene && kind != Kind::cache)
     throw UsageError("--look: " + input + " is neither a scene nor a cache");
   if (kind == Kind::cache && !arguments.view.look_patch.empty())
     throw UsageError("--look: the look document of a cache is fixed; patch the scene");
-  const Json look =
-      kind == Kind::scene ? load_document(input, arguments.view).document.look : load_cache(input).document.look;
+  if (kind == Kind::cache && arguments.view.auto_lights)
+    throw UsageError("--lights: the look document of a cache is fixed; preprocess the scene with --lights auto");
+  Json look;
+  if (kind == Kind::scene) {
+    LoadedDocument loaded = load_lit_document(arguments);
+    console.warn(loaded.warnings);
+    look = std::move(loaded.document.look);
+  } else {
+    look = load_cache(input).document.look;
+  }
   std::puts(look.dump(2).c_str());
 }
 
@@ -114,7 +130,7 @@ ExitCode run_inspect(const Arguments& arguments, Console& console) {
   if (!arguments.scene.empty() && kind != Kind::journal)
     throw UsageError("--scene: " + arguments.inputs[0] + " is no journal");
   if (arguments.print_look) {
-    print_look(arguments, kind);
+    print_look(arguments, kind, console);
     return ExitCode::ok;
   }
   switch (kind) {

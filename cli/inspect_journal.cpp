@@ -14,18 +14,15 @@ namespace {
 
 /// The state a journal is tried on. Edits of the active camera are refused when there is one: that of a cache, of
 /// --camera, or the only one of the scene.
-SceneState open_state(const Arguments& arguments) {
+SceneState open_state(const Arguments& arguments, Console& console) {
   std::error_code error;
   if (std::filesystem::is_directory(arguments.scene, error)) {
     CacheContent content = load_cache(arguments.scene);
     return {std::move(content.document), content.camera, content.pyramids};
   }
   LoadedDocument loaded = load_document(arguments.scene, arguments.view);
-  const ViewArguments& view = arguments.view;
-  const bool has_camera = !view.camera.empty() || !loaded.document.cameras.empty();
-  const Camera camera =
-      choose_camera(loaded.document, has_camera ? view.camera : std::string("auto"), view.width, view.height);
-  if (view.auto_lights) add_auto_lights(loaded.document, camera);
+  const Camera camera = set_up_inspection(loaded, arguments.view);
+  console.warn(loaded.warnings);
   return {std::move(loaded.document), camera, std::make_shared<PyramidStore>()};
 }
 
@@ -68,7 +65,7 @@ void inspect_journal(const Arguments& arguments, Console& console) {
   const Journal journal = read_journal(arguments.inputs[0]);
   std::optional<SceneState> state;
   if (!arguments.scene.empty()) {
-    state.emplace(open_state(arguments));
+    state.emplace(open_state(arguments, console));
     check_journal(*state, journal);
   }
   Json steps = Json::array();

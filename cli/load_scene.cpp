@@ -1,5 +1,6 @@
 #include "load_scene.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -39,6 +40,15 @@ LookDocument patched(LookDocument document, const std::string& patch_path) {
   return std::move(state.editable_document());
 }
 
+void warn_of_choice(LoadedDocument& loaded, const Camera& camera) {
+  const Json& nodes = loaded.document.look.at("nodes");
+  const auto cameras =
+      std::count_if(nodes.begin(), nodes.end(), [](const Json& node) { return node.contains("camera"); });
+  if (cameras < 2) return;
+  loaded.warnings.push_back("the scene has " + std::to_string(cameras) + " cameras: \"" + camera.name +
+                            "\" is used; --camera NAME chooses another");
+}
+
 bool is_lit(const Scene& scene) {
   const Color black(0, 0, 0);
   const Environment& environment = scene.environment;
@@ -61,10 +71,21 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
   return loaded;
 }
 
+Camera set_up_view(LoadedDocument& loaded, const ViewArguments& view) {
+  Camera camera = choose_camera(loaded.document, view.camera, view.width, view.height);
+  if (view.camera.empty()) warn_of_choice(loaded, camera);
+  if (view.auto_lights) add_auto_lights(loaded.document, camera);
+  return camera;
+}
+
+Camera set_up_inspection(LoadedDocument& loaded, ViewArguments view) {
+  if (view.camera.empty() && loaded.document.cameras.empty()) view.camera = "auto";
+  return set_up_view(loaded, view);
+}
+
 LoadedScene load_scene(const std::string& path, const ViewArguments& view) {
   LoadedDocument loaded = load_document(path, view);
-  const Camera camera = choose_camera(loaded.document, view.camera, view.width, view.height);
-  if (view.auto_lights) add_auto_lights(loaded.document, camera);
+  const Camera camera = set_up_view(loaded, view);
   LoadedScene scene;
   scene.hash = std::move(loaded.hash);
   scene.warnings = std::move(loaded.warnings);

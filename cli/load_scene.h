@@ -24,6 +24,12 @@ struct LoadedDocument {
 };
 [[nodiscard]] LoadedDocument load_document(const std::string& path, const ViewArguments& view);
 
+/// The camera of --camera; without it the scene's only or first one, with a warning when it has several. Adds the
+/// lights of --lights.
+[[nodiscard]] Camera set_up_view(LoadedDocument& loaded, const ViewArguments& view);
+/// The same for a scene that is looked at and not rendered: one without a camera is framed.
+[[nodiscard]] Camera set_up_inspection(LoadedDocument& loaded, ViewArguments view);
+
 /// Applies --look, then --camera and --lights. Throws InputError that names the flag when the scene has no camera or no
 /// light.
 [[nodiscard]] LoadedScene load_scene(const std::string& path, const ViewArguments& view);

@@ -28,17 +28,23 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
   return ExitCode::usage;
 }
 
+/// A large result is written piece by piece, so that the last flush alone may succeed.
+void require_printed() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("standard output", "cannot be written");
+}
+
 ExitCode run(int argc, const char* const* argv) {
   const ParsedCommandLine parsed = parse_command_line(argc, argv);
   if (!parsed.arguments) {
     std::fputs(parsed.text.c_str(), stdout);
+    require_printed();
     return ExitCode::ok;
   }
   const Interrupt interrupt;
   Console console(*parsed.arguments, interrupt);
   set_thread_count(parsed.arguments->threads);
   const ExitCode code = run_verb(*parsed.arguments, console);
-  if (std::fflush(stdout) != 0) throw IoError("standard output", "cannot be written");
+  require_printed();
   return code;
 }
 

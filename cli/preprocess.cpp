@@ -11,6 +11,7 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   refuse_foreign_folder(arguments.output);
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
+  require_writable(arguments.output);
   RenderStats stats;
   Image image = preprocess(loaded.state->scene(), arguments.view.sampling, stats, console.stage("preprocess"));
   console.end_stage();

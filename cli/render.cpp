@@ -3,26 +3,38 @@
 #include "base/hash.h"
 #include "edit/apply.h"
 #include "engine/frame_file.h"
+#include "engine/report.h"
 #include "load_scene.h"
 #include "verbs.h"
 
 namespace relook {
 namespace {
 
-/// The scene as edited by steps 1..last. Returns how many steps that were.
-std::size_t apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last) {
+/// Applies one step. Returns its class, as a replay's report has it.
+ChangeClass apply_step(SceneState& state, const Journal& journal, const JournalStep& step) {
+  const auto apply = [&](const Edit& edit) {
+    const SceneDelta delta = apply_edit(state, edit, journal.file, journal.path.parent_path());
+    return classify(state.scene(), delta).change;
+  };
+  if (step.drag.empty()) return apply(step.edit);
+  ChangeClass change = ChangeClass::color;
+  for (const Edit& entry : step.drag) change = combined(change, apply(entry));
+  return change;
+}
+
+/// The scene as edited by steps 1..last, and where the frame's header says it comes from.
+void apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last,
+                   FrameMeta& meta) {
   if (last && *last > journal.steps.size())
     throw UsageError("--step: " + std::to_string(*last) + " is beyond the " + std::to_string(journal.steps.size()) +
                      " steps of " + journal.file);
   const std::size_t count = last ? *last : journal.steps.size();
   check_journal(state, journal);
-  const std::filesystem::path folder = journal.path.parent_path();
-  for (std::size_t i = 0; i < count; ++i) {
-    const JournalStep& step = journal.steps[i];
-    if (step.drag.empty()) apply_edit(state, step.edit, journal.file, folder);
-    for (const Edit& entry : step.drag) apply_edit(state, entry, journal.file, folder);
-  }
-  return count;
+  ChangeClass change = ChangeClass::base;
+  for (std::size_t i = 0; i < count; ++i) change = apply_step(state, journal, journal.steps[i]);
+  meta.journal_hash = journal.hash;
+  meta.step = std::to_string(count);
+  meta.change_class = change_class_name(change);
 }
 
 }  // namespace
@@ -33,10 +45,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
   FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
-  if (journal) {
-    meta.journal_hash = journal->hash;
-    meta.step = std::to_string(apply_journal(*loaded.state, *journal, arguments.step));
-  }
+  if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta);
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   RenderStats stats;
   const Frame frame = render(loaded.state->scene(), arguments.view.sampling, stats, console.stage("render"));

@@ -1,6 +1,5 @@
 #include "engine/replay.h"
 
-#include <algorithm>
 #include <chrono>
 #include <set>
 
@@ -21,20 +20,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The class of several edits together, by the rule of classify().
-ChangeClass combined(ChangeClass a, ChangeClass b) {
-  const auto is = [&](ChangeClass kind) { return a == kind || b == kind; };
-  if (is(ChangeClass::mixed) || (is(ChangeClass::optical) && is(ChangeClass::geometric))) return ChangeClass::mixed;
-  return std::max(a, b);
-}
-
 /// Replays one journal into one run folder.
 class JournalRun {
  public:
   JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
              std::string scene_hash, CacheSizes cache, const std::filesystem::path& folder);
 
-  /// Writes the report whatever ends the run. Returns the number of pixels that --verify found different.
+  /// Writes the report at the end of the run, or when a signal ends it; an error leaves none. Returns the number of
+  /// pixels that --verify found different.
   std::uint64_t run();
   [[nodiscard]] const RunReport& report() const { return report_; }
 
@@ -176,7 +169,9 @@ Frame JournalRun::full_render() {
 }
 
 void JournalRun::verify(StepReport& entry) {
-  const FrameDifference difference = compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent);
+  const std::size_t round = report_.steps.size() - 1;
+  const FrameDifference difference =
+      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent, round);
   entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
   pixels_different_ += difference.pixels_different;
 }

@@ -177,11 +177,21 @@ TEST(PatchErrors, nodes) {
 
 TEST(PatchErrors, what_is_still_in_use_cannot_go) {
   EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/materials/Gold"}])"),
-            "/edit/0/path: /meshes/Ball/primitives/0/material: no material \"Gold\"");
+            "/edit/0/path: material \"Gold\" is still used by mesh \"Ball\" (/meshes/Ball/primitives/0/material)");
   EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/images/WoodImage"}])"),
-            "/edit/0/path: /textures/Wood/source: no image \"WoodImage\"; did you mean \"BumpImage\"?");
+            "/edit/0/path: image \"WoodImage\" is still used by texture \"Wood\" (/textures/Wood/source)");
   EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/lights/Bulb"}])"),
-            "/edit/0/path: /nodes/Lamp/extensions/KHR_lights_punctual/light: no light \"Bulb\"");
+            "/edit/0/path: light \"Bulb\" is still used by node \"Lamp\" "
+            "(/nodes/Lamp/extensions/KHR_lights_punctual/light)");
+  EXPECT_EQ(refusal(R"([{"op": "move", "from": "/lights/Bulb", "path": "/lights/Lantern"}])"),
+            "/edit/0/from: light \"Bulb\" is still used by node \"Lamp\" "
+            "(/nodes/Lamp/extensions/KHR_lights_punctual/light)");
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "add", "path": "/scene/extras/relook/environment/image", "value": "WoodImage"},
+                              {"op": "remove", "path": "/textures/Wood/source"}])");
+  EXPECT_EQ(refusal(state, R"([{"op": "replace", "path": "/lights/Bulb/intensity", "value": 2},
+                               {"op": "remove", "path": "/images/WoodImage"}])"),
+            "/edit/1/path: image \"WoodImage\" is still used by the scene (/scene/extras/relook/environment/image)");
   EXPECT_NE(refusal(R"([{"op": "remove", "path": "/materials"}])"), "");
   EXPECT_NE(refusal(R"([{"op": "replace", "path": "", "value": 3}])"), "");
   EXPECT_NE(refusal(R"([{"op": "remove", "path": "/scene"}])"), "");
@@ -295,6 +305,94 @@ TEST(Materials, unlit_follows_the_extension) {
   EXPECT_EQ(state.scene().material(MaterialId(2)).model, IlluminationModel::unlit);
   (void)apply_json(state, R"([{"op": "remove", "path": "/materials/Gold/extensions/KHR_materials_unlit"}])");
   EXPECT_EQ(state.scene().material(MaterialId(2)).model, IlluminationModel::metallic_roughness);
+}
+
+// "" once stood for the whole section: the entry was never checked, and a later edit failed on it.
+TEST(PatchErrors, an_empty_name_is_not_the_whole_section) {
+  for (const char* section : {"materials", "textures", "images", "samplers", "meshes", "lights", "nodes"}) {
+    const std::string path = "\"/" + std::string(section) + "/";
+    const std::string reason = ": a name must not be empty";
+    EXPECT_EQ(refusal("[{\"op\": \"add\", \"path\": " + path + "\", \"value\": {}}]"), "/edit/0/path" + reason);
+    EXPECT_EQ(refusal("[{\"op\": \"test\", \"path\": " + path + "/name\", \"value\": 1}]"), "/edit/0/path" + reason);
+    EXPECT_EQ(refusal("[{\"op\": \"copy\", \"from\": " + path + "\", \"path\": " + path + "N\"}]"),
+              "/edit/0/from" + reason);
+    EXPECT_EQ(refusal("[{\"op\": \"replace\", \"path\": \"/" + std::string(section) + "\", \"value\": {\"\": {}}}]"),
+              "/edit/0/value/" + reason);
+  }
+  EXPECT_EQ(
+      refusal(R"([{"op": "add", "path": "/extensions/KHR_lights_punctual/lights/", "value": {"type": "point"}}])"),
+      "/edit/0/path: a name must not be empty");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/meshes/Ball/primitives/0/material", "value": ""}])"),
+            "/edit/0/value: no material \"\"");
+}
+
+TEST(PatchErrors, an_index_with_leading_zeros_is_a_name) {
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/materials/01/alphaCutoff", "value": 0}])"),
+            "/edit/0/path: no material \"01\"");
+  EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/materials/00/alphaCutoff", "value": 0}])"),
+            "/edit/0/path: no material \"00\"");
+  SceneState state = small_state();
+  (void)apply_json(state, R"([{"op": "add", "path": "/materials/01", "value": {}},
+                              {"op": "replace", "path": "/materials/0/alphaCutoff", "value": 0.25}])");
+  EXPECT_TRUE(state.document().look["materials"].contains("01"));
+  EXPECT_EQ(look_at(state, "/materials/Gold/alphaCutoff"), 0.25);
+}
+
+constexpr const char* kGlassVolume = "/materials/Glass/extensions/KHR_materials_volume";
+constexpr const char* kGoldTexture = "/materials/Gold/pbrMetallicRoughness/baseColorTexture";
+
+// An infinite range has no number, and a mapping depends on the mesh: the document omits both.
+TEST(Patch, replace_finds_the_defaults_that_cannot_be_written) {
+  SceneState state = small_state();
+  (void)apply_json(state, R"([
+    {"op": "replace", "path": "/lights/Bulb/range", "value": 4},
+    {"op": "replace", "path": "/materials/Glass/extensions/KHR_materials_volume/attenuationDistance", "value": 0.5},
+    {"op": "replace", "path": "/materials/Gold/pbrMetallicRoughness/baseColorTexture/extras/relook/mapping",
+     "value": {"kind": "planar"}}])");
+  EXPECT_EQ(look_at(state, "/lights/Bulb/range"), 4);
+  EXPECT_EQ(look_at(state, kGlassVolume).at("attenuationDistance"), 0.5);
+  EXPECT_EQ(look_at(state, kGoldTexture).at("extras"),
+            Json::parse(R"({"relook": {"mapping": {"kind": "planar", "axis": "y"}}})"));
+  EXPECT_EQ(state.scene().material(MaterialId(1)).name, "Glass");
+  EXPECT_EQ(state.scene().material(MaterialId(1)).attenuation_distance, 0.5F);
+  (void)apply_json(state, R"([{"op": "replace", "path": "/lights/Bulb/range", "value": 5},
+                              {"op": "remove", "path": "/lights/Bulb/range"}])");
+  EXPECT_FALSE(look_at(state, "/lights/Bulb").contains("range"));
+}
+
+TEST(Patch, replace_below_a_displacement_finds_its_mapping) {
+  SceneState state = small_state();
+  (void)apply_json(
+      state,
+      R"([{"op": "add", "path": "/nodes/Floor/extras", "value": {"relook": {"displacement": {"texture": "Marble"}}}},
+                 {"op": "replace", "path": "/nodes/Floor/extras/relook/displacement/mapping", "value": {"kind": "solid"}}])");
+  EXPECT_EQ(look_at(state, "/nodes/Floor/extras/relook/displacement/mapping/kind"), "solid");
+}
+
+TEST(PatchErrors, only_replace_finds_what_is_absent) {
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/lights/Bulb/range"}])"),
+            "/edit/0/path: no \"range\" in /lights/Bulb");
+  EXPECT_EQ(refusal(R"([{"op": "test", "path": "/lights/Bulb/range", "value": null}])"),
+            "/edit/0/path: no \"range\" in /lights/Bulb");
+  EXPECT_EQ(refusal(R"([{"op": "copy", "from": "/lights/Bulb/range", "path": "/lights/Cone/range"}])"),
+            "/edit/0/from: no \"range\" in /lights/Bulb");
+}
+
+TEST(PatchErrors, replacing_an_absent_member_without_default_says_use_add) {
+  const auto replace = [](const std::string& path) {
+    return refusal("[{\"op\": \"replace\", \"path\": \"" + path + "\", \"value\": {}}]");
+  };
+  EXPECT_EQ(replace("/materials/Gold/normalTexture"),
+            "/edit/0/path: no \"normalTexture\" in /materials/Gold (use add)");
+  EXPECT_EQ(replace("/materials/Gold/normalTexture/extras/relook/mapping"),
+            "/edit/0/path: no \"normalTexture\" in /materials/Gold (use add)");
+  EXPECT_EQ(replace("/scene/extras/relook/environment/image"),
+            "/edit/0/path: no \"image\" in /scene/extras/relook/environment (use add)");
+  EXPECT_EQ(replace("/nodes/Floor/extras/relook/displacement/mapping"),
+            "/edit/0/path: no \"displacement\" in /nodes/Floor/extras/relook (use add)");
+  EXPECT_EQ(replace("/nodes/Hand/translation").find("use add"), std::string::npos);
+  EXPECT_EQ(replace("/nodes/Floor/translation/99999999999999999999"),
+            "/edit/0/path: \"99999999999999999999\" is no array index in /nodes/Floor/translation");
 }
 
 }  // namespace

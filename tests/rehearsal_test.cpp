@@ -45,6 +45,39 @@ TEST(Rehearsal, leaves_the_state_exactly_as_it_was) {
   for (const std::string& edit : edits) (void)apply_json(state, edit);
 }
 
+TEST(Rehearsal, takes_back_a_replace_of_what_was_absent) {
+  SceneState state = small_state();
+  const Json look = state.document().look;
+  const std::string scene = scene_text(state.scene());
+  const std::string mapping = R"([
+    {"op": "replace", "path": "/materials/Glass/extensions/KHR_materials_volume/attenuationDistance", "value": 0.5},
+    {"op": "replace", "path": "/materials/Gold/pbrMetallicRoughness/baseColorTexture/extras/relook/mapping",
+     "value": {"kind": "planar"}})";
+  const std::string range = R"([{"op": "replace", "path": "/lights/Bulb/range", "value": 4}])";
+  const std::string failing = mapping + R"(, {"op": "replace", "path": "/lights/Cone/range", "value": 0}])";
+  check_journal(state, journal_of({range, range, mapping + "]"}));
+  EXPECT_EQ(state.document().look, look);
+  EXPECT_EQ(scene_text(state.scene()), scene);
+  EXPECT_EQ(message_of([&] {
+              check_journal(state, journal_of({range, failing}));
+            }),
+            "j.json: /edit/2/value: 0 is not above 0");
+  EXPECT_EQ(state.document().look, look);
+  EXPECT_EQ(scene_text(state.scene()), scene);
+}
+
+// It used to pass here, and to fail in the middle of the replay.
+TEST(Rehearsal, refuses_an_entry_with_an_empty_name) {
+  SceneState state = small_state();
+  for (const char* edit : {R"([{"op": "add", "path": "/nodes/", "value": {"mesh": "Ball"}}])",
+                           R"([{"op": "add", "path": "/lights/", "value": {"type": "point"}}])",
+                           R"([{"op": "add", "path": "/textures/", "value": {"source": "WoodImage"}}])",
+                           R"([{"op": "add", "path": "/materials/", "value": {}},
+                               {"op": "replace", "path": "/meshes/Ball/primitives/0/material", "value": ""}])"})
+    EXPECT_EQ(message_of([&] { check_journal(state, journal_of({edit})); }),
+              "j.json: /edit/0/path: a name must not be empty");
+}
+
 /// A drag of one entry.
 JournalStep drag_of(const std::vector<std::string>& select, const std::string& edit) {
   JournalStep step;

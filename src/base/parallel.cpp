@@ -4,6 +4,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <cfenv>
 #include <memory>
 
 namespace relook {
@@ -23,12 +24,20 @@ void set_thread_count(std::size_t threads) {
     limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
 
+void use_default_float_mode() { std::fesetenv(FE_DFL_ENV); }
+
 std::size_t thread_count() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+  // Libraries change the treatment of denormal numbers for their own good, and TBB hands the mode of whoever came first
+  // on to its threads: every body gets the default mode, whatever ran before.
+  use_default_float_mode();
+  tbb::task_group_context context(tbb::task_group_context::isolated,
+                                  tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
+  const auto run = [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-  });
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), run, context);
 }
 
 }  // namespace relook

@@ -10,6 +10,9 @@ namespace relook {
 void set_thread_count(std::size_t threads);
 [[nodiscard]] std::size_t thread_count();
 
+/// Rounding to nearest, denormal numbers kept, on this thread: after a call into a library that may have changed it.
+void use_default_float_mode();
+
 /// Calls body(i) once for each i in [0, count), `grain` at least at a time on one thread. The first exception thrown by
 /// a body is rethrown here.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain = 1);

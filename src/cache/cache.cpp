@@ -225,6 +225,8 @@ void refuse_foreign_folder(const std::filesystem::path& path) {
     throw InputError(path.string(), "", "exists and is not a cache: not overwritten");
 }
 
+void require_writable(const std::filesystem::path& path) { const StagedFolder removed_again(path); }
+
 void write_cache(const std::filesystem::path& path, const CacheContent& content) {
   refuse_foreign_folder(path);
   Manifest manifest;
@@ -236,15 +238,17 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
   manifest.lights = content.lights;
 
   StagedFolder folder(path);
-  make_folders(folder.path() / kPartNames[static_cast<std::size_t>(Part::trees)]);
-  const std::vector<PartFile> parts = parts_of(content.camera);
-  manifest.files.resize(parts.size());
-  parallel_for(parts.size(), [&](std::size_t i) {
-    manifest.files[i] = write_part(folder.path(), parts[i], content, manifest.identity);
+  folder.fill([&] {
+    make_folders(folder.path() / kPartNames[static_cast<std::size_t>(Part::trees)]);
+    const std::vector<PartFile> parts = parts_of(content.camera);
+    manifest.files.resize(parts.size());
+    parallel_for(parts.size(), [&](std::size_t i) {
+      manifest.files[i] = write_part(folder.path(), parts[i], content, manifest.identity);
+    });
+    std::sort(manifest.files.begin(), manifest.files.end(),
+              [](const CacheFile& a, const CacheFile& b) { return a.name < b.name; });
+    write_file(folder.path() / kManifestName, manifest_text(manifest));
   });
-  std::sort(manifest.files.begin(), manifest.files.end(),
-            [](const CacheFile& a, const CacheFile& b) { return a.name < b.name; });
-  write_file(folder.path() / kManifestName, manifest_text(manifest));
   folder.publish();
 }
 

@@ -42,6 +42,10 @@ struct CacheAnswer {
 /// Throws InputError when something other than a cache or an empty folder is at `path`: it would not be replaced.
 void refuse_foreign_folder(const std::filesystem::path& path);
 
+/// Creates the parents of `path` and, for a moment, a folder beside it: what cannot be written is found out before the
+/// work. Throws IoError, ResourceError.
+void require_writable(const std::filesystem::path& path);
+
 /// Writes to a temporary folder beside `path` and publishes by rename; an existing cache at `path` is replaced whole,
 /// an existing folder that is not a cache is refused (InputError). Bytes do not depend on the thread count. Throws
 /// IoError, ResourceError; on failure nothing remains.

@@ -59,11 +59,21 @@ bool is_file_name(std::string_view name) {
   return stem == "geometry" || stem == "textures" || stem == "frame" || stem == "paths";
 }
 
+/// The build, and the processor's instruction set as far as Embree's arithmetic follows it.
+std::string arithmetic() {
+  const char* instructions = "generic";
+#if defined(__x86_64__)
+  instructions = __builtin_cpu_supports("avx2") ? "avx2" : __builtin_cpu_supports("avx") ? "avx" : "sse";
+#endif
+  return std::string(RELOOK_BUILD) + "-" + instructions;
+}
+
 Json content_json(const Manifest& manifest) {
   Json files = Json::array();
   for (const CacheFile& file : manifest.files)
     files.push_back({{"name", file.name}, {"bytes", file.bytes}, {"hash", file.hash}});
-  return {{"scene", manifest.identity.scene_hash},
+  return {{"build", arithmetic()},
+          {"scene", manifest.identity.scene_hash},
           {"options", manifest.identity.options_hash},
           {"camera", camera_json(manifest.camera)},
           {"samples", manifest.samples},
@@ -74,6 +84,9 @@ Json content_json(const Manifest& manifest) {
 }
 
 Manifest read_content(const JsonView& view) {
+  // Stored hits and colours are the bits of one build's arithmetic: another build would mix them with its own.
+  if (view.at("build").text() != arithmetic())
+    throw CacheDamage(CacheFault::other_version, "another build of the program, or another kind of processor, wrote it");
   Manifest manifest;
   manifest.identity = {view.at("scene").text(), view.at("options").text()};
   if (!is_hash(manifest.identity.scene_hash)) view.at("scene").fail("not a hash");

@@ -22,9 +22,10 @@ std::filesystem::path without_trailing_slash(const std::filesystem::path& path) 
 
 }  // namespace
 
-StagedFolder::StagedFolder(const std::filesystem::path& final_path) {
+StagedFolder::StagedFolder(const std::filesystem::path& final_path) : given_(without_trailing_slash(final_path)) {
   std::error_code ignored;
-  final_ = std::filesystem::weakly_canonical(without_trailing_slash(final_path), ignored);
+  // Absolute first: weakly_canonical leaves a relative path relative when nothing of it is there.
+  final_ = std::filesystem::weakly_canonical(std::filesystem::absolute(given_, ignored), ignored);
   if (final_.empty() || !final_.has_filename()) throw IoError(final_path.string(), "no folder can be written here");
   make_folders(final_.parent_path());
   const std::string stem =
@@ -43,8 +44,20 @@ StagedFolder::~StagedFolder() {
   if (!staged_.empty()) std::filesystem::remove_all(staged_, ignored);
 }
 
+void StagedFolder::fill(const std::function<void()>& fill) const {
+  try {
+    fill();
+  } catch (const Error& error) {
+    std::string what = error.what();
+    const std::string temporary = printable(staged_.string());
+    const std::size_t place = what.find(temporary);
+    if (place == std::string::npos) throw;
+    throw Error(error.code(), "", "", what.replace(place, temporary.size(), printable(given_.string())));
+  }
+}
+
 void StagedFolder::publish() {
-  sync_folder(staged_);
+  fill([this] { sync_folder(staged_); });
   int error = 0;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     const bool is_new = rename(staged_.c_str(), final_.c_str()) == 0;
@@ -59,7 +72,7 @@ void StagedFolder::publish() {
     if (cannot_exchange && replace_in_two_steps()) return sync_folder(final_.parent_path());
     if (!cannot_exchange && error != ENOENT) break;
   }
-  throw IoError(final_.string(), std::string("cannot be published: ") + std::strerror(error));
+  throw IoError(given_.string(), std::string("cannot be published: ") + std::strerror(error));
 }
 
 bool StagedFolder::replace_in_two_steps() {

@@ -1,6 +1,7 @@
 // A folder that is filled under a temporary name beside its final one and appears there whole, or not at all.
 #pragma once
 #include <filesystem>
+#include <functional>
 
 namespace relook {
 
@@ -15,6 +16,8 @@ class StagedFolder {
   StagedFolder& operator=(const StagedFolder&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return staged_; }
+  /// Runs `fill`, which writes below path(). Its errors name the final folder as given, not the temporary one.
+  void fill(const std::function<void()>& fill) const;
   /// Moves the folder to its final name. A folder already there is exchanged with it in one step, then removed, so that
   /// the final name always has the old folder or the new one. Throws IoError.
   void publish();
@@ -23,7 +26,7 @@ class StagedFolder {
   /// For file systems that cannot exchange two names: for a moment there is no folder under the final one.
   bool replace_in_two_steps();
 
-  std::filesystem::path final_, staged_;
+  std::filesystem::path given_, final_, staged_;
 };
 
 }  // namespace relook

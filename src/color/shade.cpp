@@ -60,6 +60,7 @@ class Programs {
   Programs(const RayScene& scene, ProgramTable& table) : scene_(scene), table_(table) {}
 
   std::uint32_t number(const TreeBlock& block, const RayNode& node) {
+    if (scene_.scene().light_order.size() > kMostSignatureLights) return number_of(key_of(scene_, block, node));
     const Signature signature = signature_of(block, node);
     return number(signature, [&] { return key_of(scene_, block, node); });
   }
@@ -75,6 +76,7 @@ class Programs {
   [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
  private:
+  static constexpr std::size_t kMostSignatureLights = 32;  // two bits each
   static constexpr std::uint64_t kFilterBit = std::uint64_t{1} << 63;
 
   [[nodiscard]] std::uint64_t surface_bits(ObjectId id, bool inside, std::uint64_t children) const {
@@ -90,19 +92,24 @@ class Programs {
     const std::size_t lights = scene_.scene().light_order.size();
     const LightLink* links = block.lights.data() + node.first_light;
     for (std::size_t light = 0; light < lights; ++light) {
-      // Only how a light reaches the node counts. More than 32 lights do not fit two bits each: mix.
-      if (light > 0 && light % 32 == 0) signature.lights *= 0x9FB21C651E98DF25ULL;
       const ShadowState state = links[light].state;
       const std::uint64_t bits = state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
-      signature.lights += bits << (2 * (light % 32));
+      signature.lights |= bits << (2 * light);  // only how a light reaches the node counts
     }
     return signature;
   }
+  /// The slow way, for scenes with more lights than a signature holds.
+  std::uint32_t number_of(const NodeKey& key) {
+    const auto [it, is_new] = key_numbers_.try_emplace(key, static_cast<std::uint32_t>(programs_.size()));
+    if (is_new) programs_.push_back(&table_.get(scene_.scene(), key));
+    return it->second;
+  }
   template <class MakeKey>
   std::uint32_t number(const Signature& signature, const MakeKey& make_key) {
-    if (!programs_.empty() && signature == last_) return last_number_;
+    if (has_last_ && signature == last_) return last_number_;
     const auto [it, is_new] = numbers_.try_emplace(signature, static_cast<std::uint32_t>(programs_.size()));
     if (is_new) programs_.push_back(&table_.get(scene_.scene(), make_key()));
+    has_last_ = true;
     last_ = signature;
     last_number_ = it->second;
     return last_number_;
@@ -111,7 +118,9 @@ class Programs {
   const RayScene& scene_;
   ProgramTable& table_;
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
+  std::map<NodeKey, std::uint32_t> key_numbers_;
   std::vector<const ColorProgram*> programs_;
+  bool has_last_ = false;
   Signature last_;
   std::uint32_t last_number_ = 0;
 };

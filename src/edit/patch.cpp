@@ -29,17 +29,22 @@ std::string in_place(const Tokens& tokens, std::size_t depth) {
   fail(place, "no " + noun + " \"" + tokens[depth] + "\"" + hint);
 }
 
-/// An array index below `end`, without leading zeros.
-std::size_t index_of(const Tokens& tokens, std::size_t depth, std::size_t end, const PatchPlace& place) {
+/// The number of an array index without leading zeros.
+std::optional<std::size_t> index_in(const std::string& token) {
   constexpr std::size_t kMostDigits = 9;
-  const std::string& token = tokens[depth];
   const bool is_index = !token.empty() && token.size() <= kMostDigits && (token == "0" || token[0] != '0') &&
                         std::all_of(token.begin(), token.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (!is_index) fail(place, "\"" + token + "\" is no array index" + in_place(tokens, depth));
-  const std::size_t index = std::stoul(token);
-  if (index >= end)
+  return is_index ? std::optional(std::stoul(token)) : std::nullopt;
+}
+
+/// An array index below `end`.
+std::size_t index_of(const Tokens& tokens, std::size_t depth, std::size_t end, const PatchPlace& place) {
+  const std::string& token = tokens[depth];
+  const std::optional<std::size_t> index = index_in(token);
+  if (!index) fail(place, "\"" + token + "\" is no array index" + in_place(tokens, depth));
+  if (*index >= end)
     fail(place, "index " + token + " is past the end of an array of " + std::to_string(end) + in_place(tokens, depth));
-  return index;
+  return *index;
 }
 
 Json& child_at(Json& parent, const Tokens& tokens, std::size_t depth, const PatchPlace& place) {
@@ -62,6 +67,22 @@ std::string pointer_text(const Tokens& tokens) {
   std::string text;
   for (const std::string& token : tokens) text += "/" + escape_token(token);
   return text;
+}
+
+std::size_t existing_depth(const Json& root, const Tokens& tokens) {
+  const Json* at = &root;
+  for (std::size_t depth = 0; depth < tokens.size(); ++depth) {
+    if (at->is_array()) {
+      const std::optional<std::size_t> index = index_in(tokens[depth]);
+      if (!index || *index >= at->size()) return depth;
+      at = &(*at)[*index];
+    } else {
+      const auto found = at->find(tokens[depth]);
+      if (found == at->end()) return depth;
+      at = &*found;
+    }
+  }
+  return tokens.size();
 }
 
 Json& value_at(Json& root, const Tokens& tokens, const PatchPlace& place) {

@@ -18,7 +18,9 @@ struct PatchPlace {
 
 [[nodiscard]] std::string pointer_text(const Tokens& tokens);
 
-/// The value at `tokens`. All three throw InputError{place} if there is none.
+/// How many of `tokens` lead to values that exist.
+[[nodiscard]] std::size_t existing_depth(const Json& root, const Tokens& tokens);
+/// The value at `tokens`. These three throw InputError{place} if there is none.
 [[nodiscard]] Json& value_at(Json& root, const Tokens& tokens, const PatchPlace& place);
 /// Adds as RFC 6902 4.1 does: into an object, before an array's item, or instead of the root. "-" becomes an index.
 void add_at(Json& root, Tokens& tokens, Json value, const PatchPlace& place);

@@ -1,6 +1,7 @@
 #include "edit/transaction.h"
 
 #include <algorithm>
+#include <span>
 
 #include "scene/look_names.h"
 
@@ -20,6 +21,29 @@ std::string short_text(const Json& value) {
 
 bool is_prefix(const Tokens& prefix, const Tokens& tokens) {
   return prefix.size() <= tokens.size() && std::equal(prefix.begin(), prefix.end(), tokens.begin());
+}
+
+/// The field of the look document that the first `count` tokens lead to; null for entries and what no schema knows.
+const Field* field_of(const Tokens& path, std::size_t count) {
+  const std::optional<Section> section = section_of(path[0]);
+  const std::size_t entry = section ? 2 : 1;
+  if (count <= entry) return nullptr;
+  const auto tokens = std::span(path).subspan(entry, count - entry);
+  if (section) return field_at(schema_of(*section), tokens);
+  return path[0] == "scene" ? field_at(scene_schema(), tokens) : nullptr;
+}
+
+bool has_required(const Schema& schema) {
+  return std::any_of(schema.fields.begin(), schema.fields.end(), [](const Field& field) { return field.required; });
+}
+
+/// Who uses what an edit removed, from a pointer to the mention: node "Lamp" (/nodes/Lamp/...).
+std::string user_text(const std::string& pointer) {
+  const Tokens tokens = split_pointer(pointer, "", "");
+  const std::optional<Section> section = section_of(tokens[0]);
+  const std::string user =
+      section ? std::string(target_noun(static_cast<Target>(*section))) + " \"" + tokens[1] + "\"" : "the " + tokens[0];
+  return user + " (" + pointer + ")";
 }
 
 bool is_node(const Tokens& tokens) { return tokens.size() == 2 && tokens[0] == "nodes"; }
@@ -61,6 +85,8 @@ Tokens Transaction::resolve(const std::string& pointer, const PatchPlace& place)
   if (tokens[0] == "cameras") throw InputError(place.file, place.where, "cameras are fixed and cannot be edited");
   const std::optional<Section> section = section_of(tokens[0]);
   const LookDocument& look = state_.document();
+  if (section && tokens.size() > 1 && tokens[1].empty())
+    throw InputError(place.file, place.where, "a name must not be empty");
   if (section && tokens.size() > 1 && look.look.contains(tokens[0]) && look.look[tokens[0]].is_object())
     tokens[1] = resolve_token(look, *section, tokens[1]);
   return tokens;
@@ -82,7 +108,7 @@ void Transaction::run(Resolved& resolved) {
       add_at(look, path, operation.value, place);
       break;
     case PatchOp::replace:
-      value_at(look, path, place) = operation.value;
+      replaced_value(path, place) = operation.value;
       break;
     case PatchOp::remove:
       (void)value_at(look, path, place);
@@ -110,6 +136,27 @@ void Transaction::run(Resolved& resolved) {
       break;
   }
   normalize(resolved);
+}
+
+Json& Transaction::replaced_value(const Tokens& path, const PatchPlace& place) {
+  Json& look = document().look;
+  const std::size_t depth = existing_depth(look, path);
+  if (depth == path.size()) return value_at(look, path, place);
+  Json* at = &value_at(look, Tokens(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(depth)), place);
+  const Field* missing = field_of(path, depth + 1);
+  if (!at->is_object() || missing == nullptr) return value_at(look, path, place);
+  const Field* field = field_of(path, path.size());
+  bool is_creatable = field != nullptr && field->unwritten;
+  for (std::size_t count = depth + 1; count < path.size() && is_creatable; ++count)
+    is_creatable = !has_required(*field_of(path, count)->inner);
+  if (is_creatable) {
+    for (std::size_t i = depth; i < path.size(); ++i) at = &(*at)[path[i]];
+    return *at;
+  }
+  // What has a default is absent only beside what excludes it (translation beside matrix), and cannot be added.
+  if (!missing->fallback.is_null()) return value_at(look, path, place);
+  const std::string parent = pointer_text(Tokens(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(depth)));
+  throw InputError(place.file, place.where, "no \"" + path[depth] + "\" in " + parent + " (use add)");
 }
 
 void Transaction::run_test(const Resolved& resolved, const PatchPlace& place) {
@@ -249,6 +296,14 @@ void Transaction::rethrow(const LookError& error, const std::vector<Resolved>& d
     } else if (path.starts_with(error.pointer + "/") || culprit == nullptr || op == PatchOp::remove) {
       culprit = &resolved;
     }
+  }
+  for (auto resolved = done.rbegin(); resolved != done.rend() && !error.missing.empty(); ++resolved) {
+    const bool is_move = resolved->operation->op == PatchOp::move;
+    const Tokens& removed = is_move ? resolved->from : resolved->path;
+    if (pointer_text(removed) != error.missing || (!is_move && resolved->operation->op != PatchOp::remove)) continue;
+    throw InputError(file_, resolved->operation->where + (is_move ? "/from" : "/path"),
+                     std::string(target_noun(static_cast<Target>(*section_of(removed[0])))) + " \"" + removed[1] +
+                         "\" is still used by " + user_text(error.pointer));
   }
   if (culprit == nullptr) throw InputError(file_, error.pointer, error.reason);
   throw InputError(file_, culprit->operation->where + "/path", error.pointer + ": " + error.reason);

@@ -33,6 +33,10 @@ class Transaction {
   // transaction.cpp
   [[nodiscard]] Tokens resolve(const std::string& pointer, const PatchPlace& place) const;
   void run(Resolved& resolved);
+  /// What a replace overwrites. A member that its schema marks as unwritten (look_schema.h: light range, attenuation
+  /// distance, texture mapping) is created as null if the document omits it, together with the plain objects it lies
+  /// in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
+  [[nodiscard]] Json& replaced_value(const Tokens& path, const PatchPlace& place);
   void run_test(const Resolved& resolved, const PatchPlace& place);
   void touch(const Tokens& tokens);
   void touch(const TouchedEntity& entity);

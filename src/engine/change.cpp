@@ -11,11 +11,12 @@ bool same_holes(const Material& a, const Material& b) {
          a.slot(Slot::base_color) == b.slot(Slot::base_color);
 }
 
-/// What bends the mirror and refracted rays of a surface, beside its optics.
-bool same_normals(const Material& a, const Material& b) {
-  return a.normal_scale == b.normal_scale && a.slot(Slot::normal) == b.slot(Slot::normal) &&
-         a.clearcoat_normal_scale == b.clearcoat_normal_scale &&
-         a.slot(Slot::clearcoat_normal) == b.slot(Slot::clearcoat_normal);
+/// Do the rays that a surface spawns leave in the same directions? `optics`: of both materials.
+bool same_directions(const Material& a, const Material& b, const SurfaceOptics& optics) {
+  const bool same_normal = a.normal_scale == b.normal_scale && a.slot(Slot::normal) == b.slot(Slot::normal);
+  const bool same_coat = a.clearcoat_normal_scale == b.clearcoat_normal_scale &&
+                         a.slot(Slot::clearcoat_normal) == b.slot(Slot::clearcoat_normal);
+  return (same_normal || !optics.spawns()) && (same_coat || !optics.coat_reflects);
 }
 
 std::uint8_t material_flags(const RayObject& before, const RayObject& after) {
@@ -24,7 +25,7 @@ std::uint8_t material_flags(const RayObject& before, const RayObject& after) {
       (after.optics.cut_out && !same_holes(*before.material, *after.material)))
     flags |= RayChange::moved | RayChange::shadows;
   if (before.optics.passes_light != after.optics.passes_light) flags |= RayChange::shadows;
-  if (before.optics != after.optics || (after.optics.spawns() && !same_normals(*before.material, *after.material)))
+  if (before.optics != after.optics || !same_directions(*before.material, *after.material, after.optics))
     flags |= RayChange::respawns;
   return static_cast<std::uint8_t>(flags);
 }

@@ -10,10 +10,10 @@
 namespace relook {
 namespace {
 
-/// A share of tiles spread evenly over the image, at least one.
-bool is_compared(std::size_t tile, double percent) {
+/// A share of places spread evenly over the image, at least the first one.
+bool is_compared(std::size_t place, double percent) {
   const auto reached = [&](std::size_t tiles) { return std::ceil(static_cast<double>(tiles) * percent / 100); };
-  return percent >= 100 || reached(tile + 1) > reached(tile);
+  return percent >= 100 || reached(place + 1) > reached(place);
 }
 
 void compare_pixel(const Rgba& a, const Rgba& b, FrameDifference& difference) {
@@ -49,11 +49,12 @@ FrameDifference& FrameDifference::operator+=(const FrameDifference& other) {
 
 FrameDifference compare_frames(const Frame& a, const Frame& b) { return compare_frames(a, b, 100); }
 
-FrameDifference compare_frames(const Frame& a, const Frame& b, double percent) {
+FrameDifference compare_frames(const Frame& a, const Frame& b, double percent, std::size_t round) {
   require(a.width == b.width && a.height == b.height, "frames of one size are compared");
   FrameDifference difference;
-  for (std::size_t tile = 0; tile < tile_count(a.width, a.height); ++tile) {
-    if (!is_compared(tile, percent)) continue;
+  const std::size_t tiles = tile_count(a.width, a.height);
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    if (!is_compared((tile + round) % tiles, percent)) continue;
     const TileRect rect = tile_rect(tile, a.width, a.height);
     for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
       for (std::uint32_t x = rect.x0; x < rect.x1; ++x) {

@@ -18,8 +18,9 @@ struct FrameDifference {
 
 /// Requires: frames of one size.
 [[nodiscard]] FrameDifference compare_frames(const Frame& a, const Frame& b);
-/// `percent` of the tiles, always the same ones; 100: all.
-[[nodiscard]] FrameDifference compare_frames(const Frame& a, const Frame& b, double percent);
+/// `percent` of the tiles, the same ones for the same `round` and others for the next; 100: all. Over as many rounds as
+/// there are tiles, each tile has its turn.
+[[nodiscard]] FrameDifference compare_frames(const Frame& a, const Frame& b, double percent, std::size_t round = 0);
 
 /// Members pixels_compared, pixels_different, max_error, rms_error (null when infinite).
 [[nodiscard]] Json difference_json(const FrameDifference& difference);

@@ -39,7 +39,8 @@ struct TileUpdate {
   std::vector<std::uint32_t> shaded;  // samples with new colours, increasing
   std::vector<Rgba> colors;           // of `shaded`
   std::vector<std::uint32_t> packed;  // samples with new trees, increasing
-  std::vector<std::uint32_t> words, first_word{0};
+  PathTable paths;                    // of `packed`, numbered within the tile
+  std::vector<PathId> packed_paths;
   std::vector<Hit> hits;
   std::vector<std::uint32_t> first_hit{0};
   GrowCounters counters;
@@ -177,7 +178,7 @@ struct Replayer::Impl {
     const PrimaryRays primaries(state.scene().camera, image.view);
     const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays, programs); });
     TreeBlock block;
-    std::vector<std::uint32_t> roots, chunk;
+    std::vector<std::uint32_t> roots, chunk, words;
     const auto flush = [&] {
       if (roots.empty()) return;
       const std::size_t first = update.colors.size();
@@ -201,7 +202,7 @@ struct Replayer::Impl {
         root = update_tree(grow, change.rays, primary, sample, stored, block, update.counters, changed);
       else
         root = expand_tree(grow, primary, sample, stored, block);
-      if (changed || (task.update && change.rays.lights_changed)) pack_sample(block, root, sample, update);
+      if (changed || (task.update && change.rays.lights_changed)) pack_sample(block, root, sample, words, update);
       if (changed || task.shade) {
         roots.push_back(root);
         chunk.push_back(sample);
@@ -213,16 +214,21 @@ struct Replayer::Impl {
     flush();
   }
 
-  void pack_sample(const TreeBlock& block, std::uint32_t root, std::uint32_t sample, TileUpdate& update) const {
+  void pack_sample(const TreeBlock& block, std::uint32_t root, std::uint32_t sample, std::vector<std::uint32_t>& words,
+                   TileUpdate& update) const {
+    words.clear();
     update.packed.push_back(sample);
-    pack(block, root, state.scene().light_order.size(), update.words, update.hits);
-    update.first_word.push_back(static_cast<std::uint32_t>(update.words.size()));
+    pack(block, root, state.scene().light_order.size(), words, update.hits);
+    update.packed_paths.push_back(update.paths.intern(words));
     update.first_hit.push_back(static_cast<std::uint32_t>(update.hits.size()));
   }
 
   /// Puts the new trees of a tile in place of the old ones; paths are numbered in the order of tiles and samples.
   void store_trees(TileTrees& trees, const TileUpdate& update) {
     if (update.packed.empty()) return;
+    std::vector<PathId> ids;
+    for (std::uint32_t i = 0; i < update.paths.size(); ++i)
+      ids.push_back(image.paths.intern(update.paths.words(PathId(i))));
     TileTrees next;
     next.paths = trees.paths;
     next.first_hit.reserve(trees.first_hit.size());
@@ -232,8 +238,7 @@ struct Replayer::Impl {
     for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
       std::span<const Hit> hits = trees.hits_of(sample);
       if (k < update.packed.size() && update.packed[k] == sample) {
-        next.paths[sample] = image.paths.intern(
-            std::span(update.words).subspan(update.first_word[k], update.first_word[k + 1] - update.first_word[k]));
+        next.paths[sample] = ids[update.packed_paths[k].index()];
         hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
         ++k;
       }
@@ -296,8 +301,7 @@ struct Replayer::Impl {
     result.classification = classify(state.scene(), delta);
     StepChange change = find_change(rays, state.scene(), delta, lights);
     rays.update(state.scene(), delta);
-    if (change.any_moved || change.any_shadows || change.any_respawns || !delta.objects.empty())
-      level_is_current = false;
+    if (change.any_moved) level_is_current = false;
     forget_programs(change);
     watch.lap(result.seconds.classify);
 
@@ -344,7 +348,11 @@ Resident Replayer::resident() const {
     resident.ray_paths += tile.paths.size() * sizeof(PathId);
     resident.ray_trees += tile.first_hit.size() * sizeof(std::uint32_t) + tile.hits.size() * sizeof(Hit);
   }
-  resident.total = resident.ray_paths + resident.ray_trees;
+  // Until colour trees are kept, what is kept of them is their result: a colour a sample.
+  for (const std::vector<Rgba>& colors : impl_->image.sample_colors)
+    resident.color_trees += colors.size() * sizeof(Rgba);
+  const std::uint64_t frame = impl_->image.frame.pixels.size() * sizeof(Rgba);
+  resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + frame;
   return resident;
 }
 

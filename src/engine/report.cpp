@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -101,6 +102,12 @@ Json options_json(const RunReport& report) {
 }  // namespace
 
 std::string_view program_version() { return RELOOK_VERSION; }
+
+ChangeClass combined(ChangeClass a, ChangeClass b) {
+  const auto is = [&](ChangeClass kind) { return a == kind || b == kind; };
+  if (is(ChangeClass::mixed) || (is(ChangeClass::optical) && is(ChangeClass::geometric))) return ChangeClass::mixed;
+  return std::max(a, b);
+}
 
 std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
   return numbered("frames", ".exr", step, drag_frame);

@@ -69,6 +69,9 @@ struct RunReport {
 
 [[nodiscard]] Json report_json(const RunReport& report);
 
+/// The class of several edits together, by the rule of classify(): that of a drag's release.
+[[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
+
 /// "frames/0003.exr", "frames/0003_01.exr".
 [[nodiscard]] std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
 [[nodiscard]] std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame);

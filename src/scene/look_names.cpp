@@ -44,7 +44,7 @@ const std::string* camera_of_index(const LookDocument& document, std::uint64_t i
 std::string resolve_token(const LookDocument& document, Section section, const std::string& token) {
   constexpr std::size_t kLongestIndex = 9;
   const Json& entities = document.look.at(std::string(section_name(section)));
-  const bool is_index = !token.empty() && token.size() <= kLongestIndex &&
+  const bool is_index = !token.empty() && token.size() <= kLongestIndex && (token == "0" || token[0] != '0') &&
                         std::all_of(token.begin(), token.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (!is_index || entities.contains(token)) return token;
   const std::string* name = name_of_index(document, section, std::stoull(token));

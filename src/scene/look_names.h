@@ -16,7 +16,8 @@ namespace relook {
 /// The section called `name`, if there is one.
 [[nodiscard]] std::optional<Section> section_of(std::string_view name);
 
-/// The name that a JSON pointer's token means in a section: itself if it exists or is no glTF index.
+/// The name that a JSON pointer's token means in a section: itself if it exists or is no glTF index (which
+/// has no leading zeros).
 [[nodiscard]] std::string resolve_token(const LookDocument& document, Section section, const std::string& token);
 
 /// Puts names where `value` has glTF indices (of the scene file); unknown indices stay.

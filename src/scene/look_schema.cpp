@@ -43,6 +43,11 @@ Field implied(std::string_view key, const Schema& inner) {
 Field optional(std::string_view key, const Schema& inner) {
   return {.key = key, .kind = FieldKind::object, .fallback = {}, .inner = &inner};
 }
+/// A field whose default documents omit, see Field::unwritten.
+Field unwritten(Field field) {
+  field.unwritten = true;
+  return field;
+}
 Field list(std::string_view key, const Schema& inner) {
   return {.key = key, .kind = FieldKind::list, .fallback = {}, .inner = &inner};
 }
@@ -63,7 +68,7 @@ Schema texture_info(std::vector<Field> extra = {}) {
   static const Schema transform{{reals("offset", {0.0, 0.0}, -kMost, kMost), number("rotation", 0.0, -kMost, kMost),
                                  reals("scale", {1.0, 1.0}, -kMost, kMost), integer("texCoord", {}, 0, 1)}};
   static const Schema extensions = wrapped("KHR_texture_transform", transform);
-  static const Schema relook{{optional("mapping", mapping_schema())}};
+  static const Schema relook{{unwritten(optional("mapping", mapping_schema()))}};
   static const Schema extras = wrapped("relook", relook, false);
   Schema info{{name("index", Target::textures, true), integer("texCoord", 0, 0, 1), implied("extensions", extensions),
                optional("extras", extras)}};
@@ -85,7 +90,7 @@ const Schema& material_extensions() {
   static const Schema transmission{
       {number("transmissionFactor", 0.0, 0, 1), optional("transmissionTexture", plain_texture())}};
   static const Schema volume{{number("thicknessFactor", 0.0, 0, kMost), optional("thicknessTexture", plain_texture()),
-                              number("attenuationDistance", {}, kAboveZero, 1e30),
+                              unwritten(number("attenuationDistance", {}, kAboveZero, 1e30)),
                               reals("attenuationColor", {1.0, 1.0, 1.0}, 0, 1)}};
   static const Schema specular{{number("specularFactor", 1.0, 0, 1), optional("specularTexture", plain_texture()),
                                 reals("specularColorFactor", {1.0, 1.0, 1.0}, 0, kMost),
@@ -172,7 +177,7 @@ const Schema& light_schema() {
                             number("outerConeAngle", 0.7853981633974483, 0, 1.5707963267948966)}};
   static const Schema light{{text("name"), choice("type", {}, {"point", "spot", "directional"}, true),
                              reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kMostIntensity),
-                             number("range", {}, kAboveZero, 1e30), optional("spot", spot)}};
+                             unwritten(number("range", {}, kAboveZero, 1e30)), optional("spot", spot)}};
   return light;
 }
 
@@ -182,7 +187,7 @@ const Schema& node_schema() {
   static const Schema extensions{{optional("KHR_lights_punctual", light), implied("KHR_node_visibility", visibility)}};
   static const Schema displacement{{name("texture", Target::textures, true), number("scale", 0.1, -kMost, kMost),
                                     number("midlevel", 0.5, -kMost, kMost), integer("subdivide", 0, 0, 6),
-                                    optional("mapping", mapping_schema())}};
+                                    unwritten(optional("mapping", mapping_schema()))}};
   static const Schema relook{{optional("displacement", displacement), text("instances")}};
   static const Schema extras = wrapped("relook", relook, false);
   static const Schema node = [] {

@@ -3,6 +3,7 @@
 // value, and visiting the names it refers to. glTF 2.0 section 5 and the KHR_* extensions; extras.relook.
 #pragma once
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,9 @@ struct Field {
   std::vector<std::string_view> choices = {};  // choice
   bool required = false;
   bool implied = false;  // object: created with its defaults when absent
+  // Its default cannot be written (an infinity) or depends on the mesh (a mapping), so documents omit it. An edit's
+  // "replace" takes it as there all the same, as it does every other member with a default.
+  bool unwritten = false;
 };
 struct Schema {
   std::vector<Field> fields;
@@ -51,11 +55,15 @@ void fill_from_schema(const Schema& schema, Json& value);
 void visit_names(const Schema& schema, Json& value, const std::function<void(Target, Json&)>& visit);
 void visit_names(const Schema& schema, const Json& value, const std::function<void(Target, const Json&)>& visit);
 
+/// The field that a JSON pointer's tokens lead to below `schema`; null if it knows none.
+[[nodiscard]] const Field* field_at(const Schema& schema, std::span<const std::string> tokens);
+
 /// A wrong value of a look document; knows its place so that a journal's reader can name its own.
 struct LookError : InputError {
   LookError(std::string_view file, std::string_view at, std::string_view why)
       : InputError(file, at, why), pointer(at), reason(why) {}
   std::string pointer, reason;
+  std::string missing;  // pointer to the entry that the value names and that does not exist; "" for other errors
 };
 
 /// Checks types, ranges, unknown keys, and that every name exists in `document`. Throws LookError{file, pointer, ...}.

@@ -177,7 +177,11 @@ class Checker {
       fail(place,
            "expected the name of a " + std::string(target_noun(target)) + ", got " + std::string(type_noun(value)));
     const auto& word = value.get_ref<const std::string&>();
-    if (!name_exists(document_, target, word)) fail(place, missing_name(document_, target, word));
+    if (name_exists(document_, target, word)) return;
+    LookError error(file_, place.text(), missing_name(document_, target, word));
+    if (target < Target::cameras)
+      error.missing = "/" + std::string(section_name(static_cast<Section>(target))) + "/" + escape_token(word);
+    throw error;
   }
 
   const LookDocument& document_;
@@ -240,6 +244,18 @@ void fill_from_schema(const Schema& schema, Json& value) {
     if (field.kind == FieldKind::list && member->is_array())
       for (Json& item : *member) fill_from_schema(*field.inner, item);
   }
+}
+
+const Field* field_at(const Schema& schema, std::span<const std::string> tokens) {
+  const Field* field = nullptr;
+  const Schema* level = &schema;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    field = level == nullptr ? nullptr : find_field(*level, tokens[i]);
+    if (field == nullptr) return nullptr;
+    if (field->kind == FieldKind::list) ++i;  // the fields of its items lie below an index
+    level = field->inner;
+  }
+  return field;
 }
 
 void visit_names(const Schema& schema, Json& value, const std::function<void(Target, Json&)>& visit) {

@@ -50,30 +50,34 @@ namespace {
   return mix(low, high, w);
 }
 
+constexpr float kLargest = 0x1p22F;
+
 /// sum[i] += strength * noise(p[i]), and p moves on to the next octave.
 RELOOK_VECTOR_CLONES
 void add_octave(std::size_t lanes, float strength, float* __restrict x, float* __restrict y, float* __restrict z,
                 float* __restrict sum) {
   for (std::size_t i = 0; i < lanes; ++i) {
-    sum[i] += strength * noise(x[i], y[i], z[i]);
+    // Beyond this the lattice has no fractions left: the octave is silent there.
+    const bool is_near = (std::fabs(x[i]) <= kLargest) & (std::fabs(y[i]) <= kLargest) & (std::fabs(z[i]) <= kLargest);
+    const float value = noise(is_near ? x[i] : 0.0F, is_near ? y[i] : 0.0F, is_near ? z[i] : 0.0F);
+    sum[i] += is_near ? strength * value : 0.0F;
     x[i] = x[i] * 2.0F + 17.0F;
     y[i] = y[i] * 2.0F + 31.0F;
     z[i] = z[i] * 2.0F + 47.0F;
   }
 }
 
-/// Positions in cycles, kept where the finest lattice still has fractions: anything else reads the origin.
+/// Positions in cycles, kept where the lattice still has fractions: anything else reads the origin.
 struct Positions {
   std::vector<float> x, y, z;
 
   Positions(const Procedural& t, std::span<const float> px, std::span<const float> py, std::span<const float> pz)
       : x(px.begin(), px.end()), y(py.begin(), py.end()), z(pz.begin(), pz.end()) {
-    const float largest = 0x1p22F / static_cast<float>(1U << static_cast<unsigned>(t.octaves));
     for (std::size_t i = 0; i < x.size(); ++i) {
       x[i] *= t.scale;
       y[i] *= t.scale;
       z[i] *= t.scale;
-      const bool is_near = std::fabs(x[i]) <= largest && std::fabs(y[i]) <= largest && std::fabs(z[i]) <= largest;
+      const bool is_near = std::fabs(x[i]) <= kLargest && std::fabs(y[i]) <= kLargest && std::fabs(z[i]) <= kLargest;
       if (!is_near) x[i] = y[i] = z[i] = 0;
     }
   }

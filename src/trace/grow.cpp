@@ -86,7 +86,8 @@ class Grower {
     set_filters(index, light, segment, filters_);
   }
 
-  /// Traces the shadow segments of all nodes from `first` on: apart from the rays, since like work in a row runs faster.
+  /// Traces the shadow segments of all nodes from `first` on: apart from the rays, since like work in a row runs
+  /// faster.
   void trace_lights(std::uint32_t first, GrowCounters& counters) {
     ShadowSegment segment;
     for (std::uint32_t index = first; index < b_.nodes.size(); ++index) {
@@ -190,9 +191,11 @@ class Expander {
       grower_.gathers(index, light, segment);
       grower_.set_filters(index, light, segment, grower_.filters_);
     }
-    if (!grower_.grow().scene.object(node.object()).optics.spawns()) return index;
-    grower_.for_each_child(index, grower_.spawned(index),
-                           [&](Branch, const SpawnedRay& child) { return expand(child, index); });
+    if (!grower_.grow().scene.object(node.object()).optics.spawns() && node.children() == 0) return index;
+    const Spawned rays = grower_.spawned(index);
+    if (rays.mask != (node.flags & 0xFU))
+      throw Error(ExitCode::damaged_cache, "", "", "stored ray trees do not fit the scene; preprocess again");
+    grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
   }
 
@@ -413,7 +416,8 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
                  TreeBlock& block, std::vector<std::uint32_t>& roots, GrowCounters& counters) {
   std::vector<Meeting> meetings;
   meetings.reserve(primaries.size());
-  for (const SpawnedRay& ray : primaries) meetings.push_back(Tracer::intersect(*grow.level, {ray.origin, ray.direction}));
+  for (const SpawnedRay& ray : primaries)
+    meetings.push_back(Tracer::intersect(*grow.level, {ray.origin, ray.direction}));
   counters.ray_updates += primaries.size();
   const auto first_node = static_cast<std::uint32_t>(block.nodes.size());
   for (std::size_t k = 0; k < primaries.size(); ++k) {

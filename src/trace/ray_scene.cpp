@@ -50,7 +50,6 @@ float offset_of(const Transform& m, const Box& bounds) {
 
 RayScene::RayScene(const Scene& scene) : scene_(&scene) {
   for (const Material& material : scene.materials) materials_.push_back(std::make_shared<const Material>(material));
-  objects_.reserve(scene.objects.size());
   for (const Object& object : scene.objects)
     objects_.push_back(make_object(scene, object, scene.material(object.material)));
 }
@@ -96,8 +95,14 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
 
 std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object) const {
   const Mesh& mesh = scene.mesh(object.mesh);
-  if (object.displacement && object.alive) return std::make_shared<const Mesh>(displaced(mesh, *object.displacement));
-  return {scene.assets, &mesh};
+  if (!object.displacement || !object.alive) return {scene.assets, &mesh};
+  std::erase_if(displaced_, [](const Displaced& known) { return known.result.expired(); });
+  for (const Displaced& known : displaced_)
+    if (known.mesh == object.mesh && known.displacement == *object.displacement)
+      if (auto result = known.result.lock()) return result;
+  auto result = std::make_shared<const Mesh>(displaced(mesh, *object.displacement));
+  displaced_.push_back({object.mesh, *object.displacement, result});
+  return result;
 }
 
 }  // namespace relook

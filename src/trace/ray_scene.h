@@ -1,7 +1,7 @@
 // The scene frozen for rays: per object what intersection, surface points and spawning need, derived from Scene. A
 // change of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
 #pragma once
-#include <map>
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -17,8 +17,8 @@ struct RayObject {
   Transform to_world;
   Imath::M33f normal_to_world;  // inverse transpose of the linear part, not normalised
   float condition = 1;          // of the linear part: how much it stretches rounding errors, at least 1
-  float offset = 0;      // metres along the normal that clear a hit of rounding errors
-  bool flipped = false;  // negative determinant: counter-clockwise triangles are back faces
+  float offset = 0;             // metres along the normal that clear a hit of rounding errors
+  bool flipped = false;         // negative determinant: counter-clockwise triangles are back faces
   bool alive = false;
   std::uint64_t key = 0;  // orders coincident hits
   SurfaceOptics optics;
@@ -43,7 +43,14 @@ class RayScene {
   [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object) const;
 
   const Scene* scene_ = nullptr;
-  std::vector<RayObject> objects_;                          // by ObjectId
+  struct Displaced {
+    MeshId mesh;
+    Displacement displacement;
+    std::weak_ptr<const Mesh> result;
+  };
+
+  mutable std::vector<Displaced> displaced_;                // made once, while an object uses them
+  std::deque<RayObject> objects_;                           // by ObjectId; grows only: top levels point into it
   std::vector<std::shared_ptr<const Material>> materials_;  // by MaterialId, shared by their objects
 };
 

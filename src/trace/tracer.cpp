@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "trace/surface.h"
 
 namespace relook {
@@ -123,12 +124,30 @@ struct Tracer::Impl {
   };
   std::unordered_map<const Mesh*, BottomLevel> bottom_levels;
 
-  Impl() : device(rtcNewDevice(nullptr)) {
+  // At most AVX2: AVX-512 code divides in another way, and hosts that share a cache must agree in every bit.
+  Impl() : device(rtcNewDevice("max_isa=avx2")) {
     if (device == nullptr) throw std::bad_alloc();
   }
   ~Impl() {
     for (auto& [mesh, level] : bottom_levels) rtcReleaseScene(level.scene);
     rtcReleaseDevice(device);
+  }
+
+  /// After building: Embree reports what went wrong only on request, and leaves its own float mode behind.
+  void check() const {
+    use_default_float_mode();
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    require(error == RTC_ERROR_NONE, "Embree builds its acceleration structures");
+  }
+
+  /// Drops the bottom levels of meshes that no object uses any more.
+  void drop_unused() {
+    std::erase_if(bottom_levels, [](auto& entry) {
+      if (!entry.second.mesh.expired()) return false;
+      rtcReleaseScene(entry.second.scene);
+      return true;
+    });
   }
 
   RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh) {
@@ -167,6 +186,7 @@ Tracer::Tracer() : impl_(std::make_unique<Impl>()) {}
 Tracer::~Tracer() = default;
 
 Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {
+  impl_->drop_unused();
   TopLevel level;
   level.impl_ = std::make_unique<TopLevel::Impl>();
   TopLevel::Impl& top = *level.impl_;
@@ -192,6 +212,7 @@ Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {
     top.meshes.push_back(object.mesh);
   }
   rtcCommitScene(top.scene);
+  impl_->check();
   return level;
 }
 
