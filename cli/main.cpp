@@ -58,6 +58,7 @@ int report(ExitCode code, const char* what) {
 
 int main(int argc, char** argv) {
   using relook::ExitCode;
+  relook::set_float_mode();
   try {
     return static_cast<int>(relook::run(argc, argv));
   } catch (const relook::Interrupted& interrupted) {

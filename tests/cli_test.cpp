@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/json.h"
+#include "engine/compare.h"
 #include "run_program.h"
 
 namespace relook {
@@ -221,6 +222,111 @@ TEST_F(Cli, a_cache_that_does_not_fit_is_refused_with_its_own_code_and_sentence)
   expect_error(relook({"check", at("c"), "--quiet"}), 5, "cut short");
   std::filesystem::resize_file(look, size);
   expect_error(replay(), 5, "damaged");
+}
+
+TEST_F(Cli, preprocess_writes_to_a_bare_name_in_the_working_folder) {
+  const ProgramResult result =
+      run_program({"sh", "-c", "cd \"$0\" && exec \"$1\" preprocess \"$2\" -o bare --quiet --resolution 8x8", at(""),
+                   RELOOK_PROGRAM, kScene});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(relook({"check", at("bare"), "--quiet"}).exit_code, 0);
+}
+
+TEST_F(Cli, preprocess_finds_out_that_it_cannot_write_before_it_renders) {
+  write_text(at("file"), "x");
+  expect_error(relook({"preprocess", kScene, "-o", at("file/c"), "--resolution", "8x8", "--progress", "plain"}), 6,
+               at("file"));
+}
+
+TEST_F(Cli, inspect_shows_and_counts_the_lights_of_lights_auto) {
+  const auto inspect = [](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"inspect", kScene});
+    return parse_json(relook(flags).output, "stdout");
+  };
+  const Json look = inspect({"--look", "--lights", "auto"});
+  for (const char* light : {"key", "fill", "rim"}) EXPECT_TRUE(look["lights"].contains(light)) << light;
+  EXPECT_EQ(inspect({"--lights", "auto", "--json"})["lights"], 4);
+  EXPECT_EQ(inspect({"--json"})["lights"], 1);
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  expect_error(relook({"inspect", at("c"), "--look", "--lights", "auto"}), 1, "--lights");
+}
+
+TEST_F(Cli, replay_does_not_ignore_look_or_lights_without_scene) {
+  expect_error(relook({"replay", at("c"), at("j"), "-o", at("r"), "--look", at("patch.json")}), 1, "--scene");
+  expect_error(relook({"replay", at("c"), at("j"), "-o", at("r"), "--lights", "auto"}), 1, "--scene");
+}
+
+/// Every pixel of one tile differs.
+Frame with_another_tile(const Frame& frame, std::size_t tile) {
+  Frame other = frame;
+  const TileRect rect = tile_rect(tile, frame.width, frame.height);
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y)
+    for (std::uint32_t x = rect.x0; x < rect.x1; ++x) other.pixels[std::size_t{y} * frame.width + x].r = 1;
+  return other;
+}
+
+TEST(Verify, a_share_of_the_tiles_reaches_each_tile_in_some_step) {
+  Frame frame;
+  frame.width = frame.height = 256;
+  frame.pixels.assign(256 * 256, Rgba(0, 0, 0, 1));
+  for (std::size_t tile = 0; tile < tile_count(256, 256); ++tile) {
+    int found = 0;
+    for (std::size_t round = 0; round < 4; ++round) {
+      const FrameDifference difference = compare_frames(frame, with_another_tile(frame, tile), 25, round);
+      EXPECT_EQ(difference.pixels_compared, 4U * 64 * 64);
+      found += difference.pixels_different > 0 ? 1 : 0;
+    }
+    EXPECT_EQ(found, 1) << "tile " << tile;
+  }
+}
+
+TEST_F(Cli, verify_of_half_the_tiles_takes_the_other_half_in_the_next_step) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--verify=50", "--quiet"}).exit_code, 0);
+  const Json steps = read_json(at("run/report.json"))["steps"];
+  ASSERT_EQ(steps.size(), 5U);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    EXPECT_EQ(steps[i]["verify"]["pixels_compared"], (i % 2 == 0 ? 64 : 72 - 64) * 40) << i;
+}
+
+TEST_F(Cli, a_rendered_step_is_byte_for_byte_the_replayed_frame_with_its_header) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--float", "--quiet"}).exit_code, 0);
+  for (const auto& [step, frame] : {std::pair{"0", "0000"}, {"1", "0001"}, {"2", "0002"}}) {
+    ASSERT_EQ(relook({"render", kScene, "-o", at("full.exr"), "--journal", at("j.json"), "--step", step, "--float",
+                      "--resolution", "72x40", "--quiet"})
+                  .exit_code,
+              0);
+    EXPECT_TRUE(read_file(at("full.exr")) == read_file(at("run/frames/" + std::string(frame) + ".exr")))
+        << "step " << step;
+  }
+}
+
+TEST_F(Cli, one_of_several_cameras_is_chosen_with_a_warning) {
+  const std::filesystem::path scene = at("two/spheres.gltf");
+  std::filesystem::copy(std::filesystem::path(kScene).parent_path(), at("two"),
+                        std::filesystem::copy_options::recursive);
+  Json gltf = read_json(scene);
+  gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size());
+  gltf["nodes"].push_back({{"name", "Second"}, {"camera", 0}, {"translation", {0, 1, 9}}});
+  write_text(scene, gltf.dump());
+  const auto render = [&](std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", scene.string(), "-o", at("x.exr"), "--resolution", "8x8"});
+    const ProgramResult result = relook(flags);
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return result.output;
+  };
+  const std::string warned = render({"--json", "--progress", "none"});
+  ASSERT_NE(warned.find('{'), std::string::npos) << warned;
+  const std::string name = parse_json(warned.substr(warned.find('{')), "stdout")["camera"];
+  EXPECT_TRUE(warned.starts_with("relook: warning: ")) << warned;
+  const std::string line = warned.substr(0, warned.find('\n'));
+  EXPECT_NE(line.find("\"" + name + "\""), std::string::npos) << line;
+  EXPECT_NE(line.find("--camera"), std::string::npos) << line;
+  EXPECT_EQ(render({"--quiet"}), "");
+  EXPECT_EQ(render({"--camera", "Second", "--progress", "none"}).find("warning"), std::string::npos);
 }
 
 TEST_F(Cli, folders_of_the_user_are_not_overwritten) {

@@ -218,6 +218,24 @@ TEST_F(Fault, a_full_disk_during_preprocess_leaves_nothing) {
   EXPECT_FALSE(std::filesystem::exists(at("disk/c")));
 }
 
+TEST_F(Fault, a_full_disk_during_preprocess_is_told_by_the_output_of_the_user) {
+  const SmallDisk disk(at("disk"), "128k");
+  if (!disk.is_mounted()) GTEST_SKIP() << "SKIPPED: mounting a small tmpfs is not permitted here";
+  const ProgramResult result = relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "160x90", "--quiet"});
+  EXPECT_EQ(result.exit_code, 4) << result.output;
+  EXPECT_TRUE(result.output.starts_with("relook: " + at("disk/c"))) << result.output;
+  EXPECT_EQ(result.output.find(".relook-"), std::string::npos) << result.output;
+}
+
+TEST_F(Fault, a_look_document_that_does_not_fit_on_standard_output_exits_6) {
+  for (const std::string& command : {"inspect \"" + kScene + "\" --look", std::string("replay --help")}) {
+    const ProgramResult result =
+        run_program({"sh", "-c", std::string("exec \"") + RELOOK_PROGRAM + "\" " + command + " >/dev/full"});
+    EXPECT_EQ(result.exit_code, 6) << command << ": " << result.output;
+    EXPECT_EQ(result.output, "relook: standard output: cannot be written\n") << command;
+  }
+}
+
 TEST_F(Fault, a_full_disk_during_replay_leaves_no_half_file) {
   make_cache("160x90");
   write_journal(200);

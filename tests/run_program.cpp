@@ -7,6 +7,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "base/files.h"
 
@@ -76,6 +77,7 @@ Json verified_report(const ReplayCase& replay, const ScratchFolder& folder) {
 
 void expect_exact_steps(const Json& report, bool plain_names) {
   ASSERT_TRUE(report.contains("steps"));
+  std::set<std::string> classes;
   int dragged = 0;  // the step whose drag frames came last: its own frame changes nothing more
   for (const Json& step : report["steps"]) {
     const std::string name = step["name"], change = step["class"];
@@ -86,6 +88,7 @@ void expect_exact_steps(const Json& report, bool plain_names) {
     EXPECT_GT(step["verify"]["pixels_compared"], 0);
     if (!step["drag_frame"].is_null()) dragged = number;
     if (number == 0) continue;
+    classes.insert(change);
     if (!plain_names) {
       EXPECT_EQ(change, name.substr(0, name.find(':')));
     }
@@ -95,6 +98,7 @@ void expect_exact_steps(const Json& report, bool plain_names) {
     if (change != "color") continue;
     for (const char* counter : {"ray_tests", "ray_updates", "shadow_updates"}) EXPECT_EQ(step[counter], 0) << counter;
   }
+  for (const char* needed : {"color", "optical", "geometric"}) EXPECT_TRUE(classes.contains(needed)) << needed;
 }
 
 }  // namespace relook

@@ -41,7 +41,8 @@ struct ReplayCase {
 [[nodiscard]] Json verified_report(const ReplayCase& replay, const ScratchFolder& folder);
 
 /// Checks each step of a report: no pixel differs from the full render, the step's name begins with its class (as in
-/// "color: ..."; not checked for `plain_names`), it changed the image, and a colour step shot no ray.
+/// "color: ..."; not checked for `plain_names`), it changed the image, and a colour step shot no ray. There is a
+/// colour, an optical and a geometric step.
 void expect_exact_steps(const Json& report, bool plain_names = false);
 
 }  // namespace relook

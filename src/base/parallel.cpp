@@ -1,10 +1,12 @@
 #include "base/parallel.h"
 
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
-#include <cfenv>
 #include <memory>
 
 namespace relook {
@@ -24,14 +26,19 @@ void set_thread_count(std::size_t threads) {
     limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
 }
 
-void use_default_float_mode() { std::fesetenv(FE_DFL_ENV); }
+void set_float_mode() {
+#if defined(__x86_64__)
+  constexpr unsigned kFlushToZero = 1U << 15, kDenormalsAreZero = 1U << 6, kAllMasked = 0x1F80;
+  _mm_setcsr(kAllMasked | kFlushToZero | kDenormalsAreZero);
+#endif
+}
 
 std::size_t thread_count() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain) {
-  // Libraries change the treatment of denormal numbers for their own good, and TBB hands the mode of whoever came first
-  // on to its threads: every body gets the default mode, whatever ran before.
-  use_default_float_mode();
+  // Embree changes the treatment of denormal numbers, and TBB hands the mode of whoever came first on to its threads:
+  // every body gets ours, whatever ran before.
+  set_float_mode();
   tbb::task_group_context context(tbb::task_group_context::isolated,
                                   tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
   const auto run = [&](const auto& range) {

@@ -10,8 +10,9 @@ namespace relook {
 void set_thread_count(std::size_t threads);
 [[nodiscard]] std::size_t thread_count();
 
-/// Rounding to nearest, denormal numbers kept, on this thread: after a call into a library that may have changed it.
-void use_default_float_mode();
+/// Rounding to nearest, denormal numbers are zero, on this thread: the one mode in which pixels are computed. For the
+/// start of a program, and after a call into a library that may have changed it; parallel_for sets it for its bodies.
+void set_float_mode();
 
 /// Calls body(i) once for each i in [0, count), `grain` at least at a time on one thread. The first exception thrown by
 /// a body is rethrown here.

@@ -86,7 +86,8 @@ Json content_json(const Manifest& manifest) {
 Manifest read_content(const JsonView& view) {
   // Stored hits and colours are the bits of one build's arithmetic: another build would mix them with its own.
   if (view.at("build").text() != arithmetic())
-    throw CacheDamage(CacheFault::other_version, "another build of the program, or another kind of processor, wrote it");
+    throw CacheDamage(CacheFault::other_version,
+                      "another build of the program, or another kind of processor, wrote it");
   Manifest manifest;
   manifest.identity = {view.at("scene").text(), view.at("options").text()};
   if (!is_hash(manifest.identity.scene_hash)) view.at("scene").fail("not a hash");

@@ -94,7 +94,7 @@ class RegisterFile {
 }  // namespace
 
 Value ExpressionBuilder::emit(const Instruction& instruction) {
-  const auto [it, is_new] = known_.try_emplace(instruction.key(), static_cast<Value>(code_.size()));
+  const auto [it, is_new] = known_.try_emplace(instruction, static_cast<Value>(code_.size()));
   if (is_new) code_.push_back(instruction);
   return it->second;
 }
@@ -207,9 +207,14 @@ ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>
     place[i] = registers.take(1);
     program.uniform.push_back(step_of(i));
   }
-  std::vector<std::vector<std::size_t>> ends(code.size() + 2);
-  for (std::size_t i = 0; i < code.size(); ++i)
-    if (last_use[i] != 0 && !is_uniform[i] && code[i].op != Op::channel) ends[last_use[i]].push_back(i);
+  // Values by where they end, as lists: first_end[i] is one that ends at i, next_end[value] the next of these.
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::vector<std::size_t> first_end(code.size() + 2, kNone), next_end(code.size(), kNone);
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    if (last_use[i] == 0 || is_uniform[i] || code[i].op == Op::channel) continue;
+    next_end[i] = first_end[last_use[i]];
+    first_end[last_use[i]] = i;
+  }
   for (std::size_t i = 0; i < code.size(); ++i) {
     if (last_use[i] != 0 && !is_uniform[i]) {
       if (code[i].op == Op::channel) {
@@ -219,7 +224,7 @@ ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>
         program.varying.push_back(step_of(i));
       }
     }
-    for (std::size_t ended : ends[i + 1])
+    for (std::size_t ended = first_end[i + 1]; ended != kNone; ended = next_end[ended])
       for (unsigned k = 0; k < result_count(code[ended].op); ++k)
         registers.release(static_cast<std::uint16_t>(place[ended] + k));
   }

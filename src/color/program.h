@@ -4,8 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <map>
-#include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include "color/field.h"
@@ -61,7 +60,15 @@ struct Instruction {
   Op op = Op::constant;
   std::uint32_t payload = 0;
   std::array<Value, 5> operands{};
-  auto key() const { return std::tuple(op, payload, operands); }
+  bool operator==(const Instruction&) const = default;
+};
+
+struct InstructionHash {
+  std::size_t operator()(const Instruction& instruction) const {
+    std::uint64_t hash = static_cast<std::uint64_t>(instruction.op) << 32 | instruction.payload;
+    for (Value operand : instruction.operands) hash = (hash ^ operand) * 0x9E3779B97F4A7C15ULL;
+    return hash ^ (hash >> 29);
+  }
 };
 
 /// What an expression reads: an edit that changes none of it cannot change the colour.
@@ -74,7 +81,10 @@ struct Dependencies {
 /// Builds the expression of one node. All arithmetic happens in the order in which it is written.
 class ExpressionBuilder {
  public:
-  ExpressionBuilder(const Scene& scene, MaterialId material) : scene_(scene), material_(material) {}
+  ExpressionBuilder(const Scene& scene, MaterialId material) : scene_(scene), material_(material) {
+    code_.reserve(kUsualLength);
+    known_.reserve(kUsualLength);
+  }
 
   [[nodiscard]] Value constant(float value);
   [[nodiscard]] Value field(Field field, unsigned component = 0);
@@ -98,6 +108,8 @@ class ExpressionBuilder {
   [[nodiscard]] const Dependencies& dependencies() const { return dependencies_; }
 
  private:
+  static constexpr std::size_t kUsualLength = 512;
+
   const Material& note(FieldMask mask);
   Value emit(const Instruction& instruction);
   [[nodiscard]] bool is_constant(Value value, float* number) const;
@@ -105,7 +117,7 @@ class ExpressionBuilder {
   const Scene& scene_;
   MaterialId material_;
   std::vector<Instruction> code_;
-  std::map<std::tuple<Op, std::uint32_t, std::array<Value, 5>>, Value> known_;
+  std::unordered_map<Instruction, Value, InstructionHash> known_;
   Dependencies dependencies_;
 };
 

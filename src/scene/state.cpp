@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/parallel.h"
 #include "scene/compile_scene.h"
 #include "scene/look_schema.h"
 
@@ -11,6 +12,7 @@ struct SceneState::Index : SceneIndex {};
 
 SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<PyramidStore> pyramids)
     : document_(std::move(document)), pyramids_(std::move(pyramids)), index_(std::make_shared<Index>()) {
+  set_float_mode();
   if (pyramids_ == nullptr) pyramids_ = std::make_shared<PyramidStore>();
   scene_.assets = document_.assets;
   scene_.camera = std::move(camera);
@@ -52,6 +54,7 @@ void SceneState::drop_slots_after(const SlotCounts& counts) {
 }
 
 SceneDelta SceneState::recompile(const std::vector<TouchedEntity>& touched, std::string_view file) {
+  set_float_mode();
   return Compilation(document_, *pyramids_, scene_, *index_, file).run(touched);
 }
 

@@ -135,7 +135,7 @@ struct Tracer::Impl {
 
   /// After building: Embree reports what went wrong only on request, and leaves its own float mode behind.
   void check() const {
-    use_default_float_mode();
+    set_float_mode();
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
     require(error == RTC_ERROR_NONE, "Embree builds its acceleration structures");
