@@ -52,15 +52,21 @@ namespace {
 
 constexpr float kLargest = 0x1p22F;
 
+/// Beyond kLargest the lattice has no fractions left: octaves stand still there. Apart from add_octave, where it would
+/// keep the compiler from vectorising.
+void bound(std::vector<float>& coordinates) {
+  for (float& x : coordinates) {
+    x = x > -kLargest ? x : -kLargest;
+    x = x < kLargest ? x : kLargest;
+  }
+}
+
 /// sum[i] += strength * noise(p[i]), and p moves on to the next octave.
 RELOOK_VECTOR_CLONES
 void add_octave(std::size_t lanes, float strength, float* __restrict x, float* __restrict y, float* __restrict z,
                 float* __restrict sum) {
   for (std::size_t i = 0; i < lanes; ++i) {
-    // Beyond this the lattice has no fractions left: the octave is silent there.
-    const bool is_near = (std::fabs(x[i]) <= kLargest) & (std::fabs(y[i]) <= kLargest) & (std::fabs(z[i]) <= kLargest);
-    const float value = noise(is_near ? x[i] : 0.0F, is_near ? y[i] : 0.0F, is_near ? z[i] : 0.0F);
-    sum[i] += is_near ? strength * value : 0.0F;
+    sum[i] += strength * noise(x[i], y[i], z[i]);
     x[i] = x[i] * 2.0F + 17.0F;
     y[i] = y[i] * 2.0F + 31.0F;
     z[i] = z[i] * 2.0F + 47.0F;
@@ -88,6 +94,9 @@ std::vector<float> fractal_noise(Positions p, std::int32_t octaves) {
   std::vector<float> sum(p.x.size(), 0.0F);
   float strength = 1, total = 0;
   for (std::int32_t i = 0; i < octaves; ++i) {
+    bound(p.x);
+    bound(p.y);
+    bound(p.z);
     add_octave(sum.size(), strength, p.x.data(), p.y.data(), p.z.data(), sum.data());
     total += strength;
     strength *= 0.5F;

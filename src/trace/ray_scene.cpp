@@ -51,7 +51,7 @@ float offset_of(const Transform& m, const Box& bounds) {
 RayScene::RayScene(const Scene& scene) : scene_(&scene) {
   for (const Material& material : scene.materials) materials_.push_back(std::make_shared<const Material>(material));
   for (const Object& object : scene.objects)
-    objects_.push_back(make_object(scene, object, scene.material(object.material)));
+    objects_.push_back(std::make_unique<RayObject>(make_object(scene, object, scene.material(object.material))));
 }
 
 void RayScene::update(const Scene& scene, const SceneDelta& delta) {
@@ -66,11 +66,11 @@ void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   for (std::size_t i = 0; i < materials_.size(); ++i)
     if (!materials_[i]) materials_[i] = std::make_shared<const Material>(scene.materials[i]);
   for (const auto& change : delta.objects) stale[change.id.index()] = true;
-  objects_.resize(scene.objects.size());
+  while (objects_.size() < scene.objects.size()) objects_.push_back(std::make_unique<RayObject>());
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const Object& object = scene.objects[i];
-    if (stale[i] || stale_material[object.material.index()] || !objects_[i].mesh)
-      objects_[i] = make_object(scene, object, scene.material(object.material));
+    if (stale[i] || stale_material[object.material.index()] || !objects_[i]->mesh)
+      *objects_[i] = make_object(scene, object, scene.material(object.material));
   }
 }
 

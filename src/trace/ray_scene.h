@@ -1,7 +1,6 @@
 // The scene frozen for rays: per object what intersection, surface points and spawning need, derived from Scene. A
 // change of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
 #pragma once
-#include <deque>
 #include <memory>
 #include <vector>
 
@@ -32,7 +31,7 @@ class RayScene {
   /// Takes over what `delta` changed; `scene` is the state after it.
   void update(const Scene& scene, const SceneDelta& delta);
 
-  [[nodiscard]] const RayObject& object(ObjectId id) const { return objects_[id.index()]; }
+  [[nodiscard]] const RayObject& object(ObjectId id) const { return *objects_[id.index()]; }
   [[nodiscard]] std::size_t size() const { return objects_.size(); }
   [[nodiscard]] const Scene& scene() const { return *scene_; }
 
@@ -50,7 +49,7 @@ class RayScene {
   };
 
   mutable std::vector<Displaced> displaced_;                // made once, while an object uses them
-  std::deque<RayObject> objects_;                           // by ObjectId; grows only: top levels point into it
+  std::vector<std::unique_ptr<RayObject>> objects_;         // by ObjectId; none moves or goes: top levels point to them
   std::vector<std::shared_ptr<const Material>> materials_;  // by MaterialId, shared by their objects
 };
 
