@@ -73,7 +73,8 @@ const char* paper_ratio(const std::string& step) {
   return it == ratios.end() ? "-" : it->second;
 }
 
-void print_render(const Options& options, const SceneState& state, double& full_seconds, Image& image) {
+/// Prints the full render's figures; returns the nanoseconds of one thread that a ray or shadow segment takes in it.
+double print_render(const Options& options, const SceneState& state, double& full_seconds, Image& image) {
   RenderStats stats;
   double render_seconds = 0;  // without the acceleration structures, of the fastest run too
   full_seconds = fastest(5, [&] {
@@ -97,6 +98,7 @@ void print_render(const Options& options, const SceneState& state, double& full_
               100 * bare.seconds / render_seconds);
   std::printf("%-46s %10.2f (paper: 1.72; to reach: 1.3)\n", "preprocess / full render",
               preprocess_seconds / full_seconds);
+  return render_seconds * static_cast<double>(thread_count()) / rays * 1e9;
 }
 
 void print_sizes(const Replayer& replayer, const Options& options) {
@@ -155,9 +157,8 @@ void run(const Options& options) {
               options.width, options.height, options.view.samples, thread_count(), state.scene().objects.size());
   double full_seconds = 0;
   Image image;
-  print_render(options, state, full_seconds, image);
-  const double ray_count = static_cast<double>(options.width) * options.height * options.view.samples;
-  print_texture_price(state, full_seconds / ray_count * 1e9 * static_cast<double>(thread_count()));
+  const double ray_nanoseconds = print_render(options, state, full_seconds, image);
+  print_texture_price(state, ray_nanoseconds);
   Replayer replayer(std::move(state), std::move(image));
   print_sizes(replayer, options);
   if (options.journal != "-") print_steps(replayer, options, full_seconds);
