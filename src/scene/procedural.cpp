@@ -30,6 +30,8 @@ namespace {
 [[gnu::always_inline]] inline float fade(float t) { return t * t * t * (t * (t * 6.0F - 15.0F) + 10.0F); }
 [[gnu::always_inline]] inline float mix(float a, float b, float t) { return a + t * (b - a); }
 
+/// Gradient noise, about [-1, 1], 0 on the integer lattice: the fade curve and gradients of K. Perlin, Improving Noise
+/// (2002), with an integer hash for the permutation table.
 [[gnu::always_inline]] inline float noise(float px, float py, float pz) {
   const float fx = portable_floor(px), fy = portable_floor(py), fz = portable_floor(pz);
   const auto ix = static_cast<std::uint32_t>(static_cast<std::int32_t>(fx));
@@ -119,8 +121,6 @@ float pattern(const Procedural& t, float x, float z, float noise_value) {
 }
 
 }  // namespace
-
-float gradient_noise(Point position) { return noise(position.x, position.y, position.z); }
 
 void procedural_weights(const Procedural& texture, std::span<const float> x, std::span<const float> y,
                         std::span<const float> z, std::span<float> weight) {

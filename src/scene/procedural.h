@@ -17,8 +17,4 @@ void procedural_weights(const Procedural& texture, std::span<const float> x, std
 /// The colour for a weight; alpha 1.
 [[nodiscard]] Rgba mixed(const Procedural& texture, float weight);
 
-/// Gradient noise in [-1, 1], 0 on the integer lattice, period 2^31 (K. Perlin, Improving Noise, 2002: its fade curve and
-/// gradients, with an integer hash for the permutation table).
-[[nodiscard]] float gradient_noise(Point position);
-
 }  // namespace relook

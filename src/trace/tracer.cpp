@@ -124,7 +124,7 @@ struct Tracer::Impl {
   };
   std::unordered_map<const Mesh*, BottomLevel> bottom_levels;
 
-  // At most AVX2: AVX-512 code divides in another way, and hosts that share a cache must agree in every bit.
+  // At most AVX2: hosts that share a cache must agree in every bit, so they must run the same code.
   Impl() : device(rtcNewDevice("max_isa=avx2")) {
     if (device == nullptr) throw std::bad_alloc();
   }
