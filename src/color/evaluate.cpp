@@ -83,14 +83,14 @@ Rgba environment_value(const Environment& environment, const Direction& d) {
 
 class Run {
  public:
-  Run(const ColorProgram& program, const RayScene& scene, const TreeBlock& block, bool are_filters, BlockColors& colors,
+  Run(const BoundProgram& bound, const RayScene& scene, const TreeBlock& block, bool are_filters, BlockColors& colors,
       std::vector<Column>& registers)
-      : program_(program), scene_(scene), block_(block), are_filters_(are_filters), colors_(colors), r_(registers) {}
+      : program_(*bound.program), material_(bound.material), scene_(scene), block_(block), are_filters_(are_filters), colors_(colors), r_(registers) {}
 
   void fill_uniform() {
     for (const auto& step : program_.uniform) {
       if (is_leaf(step.op))
-        r_[step.out].fill(leaf_value(step, scene_.scene(), program_.material));
+        r_[step.out].fill(leaf_value(step, scene_.scene(), material_));
       else
         compute(step);
     }
@@ -138,7 +138,7 @@ class Run {
     for (int channel = 0; channel < 4; ++channel) r_[static_cast<std::size_t>(first + channel)][lane] = value[channel];
   }
   [[nodiscard]] const TextureSlot& slot_of(const ColorProgram::Step& step) const {
-    return scene_.scene().material(program_.material).slot(static_cast<Slot>(step.payload));
+    return scene_.scene().material(material_).slot(static_cast<Slot>(step.payload));
   }
   void look_up(const ColorProgram::Step& step, std::size_t lanes) {
     const TextureSlot& slot = slot_of(step);
@@ -171,6 +171,7 @@ class Run {
   }
 
   const ColorProgram& program_;
+  MaterialId material_;
   const RayScene& scene_;
   const TreeBlock& block_;
   bool are_filters_;
@@ -180,10 +181,10 @@ class Run {
 
 }  // namespace
 
-void evaluate(const ColorProgram& program, const RayScene& scene, const TreeBlock& block, bool are_filters,
+void evaluate(const BoundProgram& bound, const RayScene& scene, const TreeBlock& block, bool are_filters,
               std::span<const std::uint32_t> indices, BlockColors& colors, Scratch& scratch) {
-  if (scratch.registers.size() < program.registers) scratch.registers.resize(program.registers);
-  Run run(program, scene, block, are_filters, colors, scratch.registers);
+  if (scratch.registers.size() < bound.program->registers) scratch.registers.resize(bound.program->registers);
+  Run run(bound, scene, block, are_filters, colors, scratch.registers);
   run.fill_uniform();
   for (std::size_t first = 0; first < indices.size(); first += kLanes)
     run.run(indices.subspan(first, std::min(kLanes, indices.size() - first)));

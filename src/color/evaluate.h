@@ -26,9 +26,15 @@ struct Scratch {
   std::vector<Column> registers;
 };
 
-/// Runs `program` for nodes (or filters, if `are_filters`) `indices` of `block` and stores their colours. The children
+/// A program and the material whose parameters its leaves read.
+struct BoundProgram {
+  const ColorProgram* program = nullptr;
+  MaterialId material;
+};
+
+/// Runs a program for nodes (or filters, if `are_filters`) `indices` of `block` and stores their colours. The children
 /// and filters of the nodes must be there already.
-void evaluate(const ColorProgram& program, const RayScene& scene, const TreeBlock& block, bool are_filters,
+void evaluate(const BoundProgram& bound, const RayScene& scene, const TreeBlock& block, bool are_filters,
               std::span<const std::uint32_t> indices, BlockColors& colors, Scratch& scratch);
 
 }  // namespace relook

@@ -52,14 +52,14 @@ std::array<Value, 4> surface_expression(SurfaceTerms& terms) {
 /// The share of light that passes a transparent surface on its way to a node.
 std::array<Value, 4> filter_expression(SurfaceTerms& terms) {
   Triple through = terms.grey(0);
-  const Material& material = terms.builder().shape(Field::model);
-  if (material.model == IlluminationModel::blinn_phong) {
+  const IlluminationModel model = terms.builder().shape(Field::model).model;
+  if (model == IlluminationModel::blinn_phong) {
     through = terms.base_color() * min(terms.field(Field::refraction) + terms.field(Field::transparency), 1.0F);
-  } else if (material.model == IlluminationModel::metallic_roughness) {
+  } else if (model == IlluminationModel::metallic_roughness) {
     const Scalar share = terms.textured(Field::transmission, Slot::transmission, 0) *
                          (1.0F - terms.textured(Field::metallic, Slot::metallic_roughness, 2));
     through = {share, share, share};
-    const bool leaves_volume = terms.key().inside && terms.builder().shape(Field::thickness).thickness > 0;
+    const bool leaves_volume = terms.key().inside && terms.builder().shape(Field::thickness).thick;
     through = through * (leaves_volume ? terms.beer(terms.input(Input::length_inside)) : terms.base_color());
   }
   if (terms.builder().shape(Field::alpha_mode).alpha_mode != AlphaMode::blend) return values(through, terms.number(1));
@@ -81,8 +81,8 @@ std::array<Value, 4> environment_expression(SurfaceTerms& terms) {
 
 }  // namespace
 
-ColorProgram build_program(const Scene& scene, const NodeKey& key) {
-  ExpressionBuilder builder(scene, key.material);
+ColorProgram build_program(const Scene& scene, const MaterialStructure& structure, const NodeKey& key) {
+  ExpressionBuilder builder(scene, structure);
   SurfaceTerms terms(builder, key);
   std::array<Value, 4> result{};
   switch (key.kind) {
@@ -96,7 +96,7 @@ ColorProgram build_program(const Scene& scene, const NodeKey& key) {
       result = environment_expression(terms);
       break;
   }
-  return finish(builder, result, key.material);
+  return finish(builder, result);
 }
 
 }  // namespace relook

@@ -20,7 +20,7 @@ struct VisibleLight {
   auto operator<=>(const VisibleLight&) const = default;
 };
 
-/// Nodes with equal keys share one program.
+/// Nodes with equal keys share a program and its parameters.
 struct NodeKey {
   NodeKind kind = NodeKind::environment;
   MaterialId material;  // none for the environment
@@ -32,6 +32,7 @@ struct NodeKey {
   auto operator<=>(const NodeKey&) const = default;
 };
 
-[[nodiscard]] ColorProgram build_program(const Scene& scene, const NodeKey& key);
+/// The program of nodes whose keys differ in the material alone, if these materials have this structure.
+[[nodiscard]] ColorProgram build_program(const Scene& scene, const MaterialStructure& structure, const NodeKey& key);
 
 }  // namespace relook

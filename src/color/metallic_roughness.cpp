@@ -73,7 +73,7 @@ class BaseLayer {
 
   /// Ambient light, mirror and transmission: what depends on the view alone.
   [[nodiscard]] Triple view_terms() {
-    const bool volume = t_.builder().shape(Field::thickness).thickness > 0 && may_transmit();
+    const bool volume = t_.builder().shape(Field::thickness).thick && may_transmit();
     const Scalar weight = volume ? exact_weight(t_, nv_) : schlick(nv_);
     const Triple dielectric = dielectric_fresnel(weight);
     const Triple mirror = fresnel(dielectric, weight);
@@ -97,7 +97,7 @@ class BaseLayer {
   }
 
  private:
-  [[nodiscard]] bool may_transmit() { return t_.builder().shape(Field::transmission).transmission > 0; }
+  [[nodiscard]] bool may_transmit() { return t_.builder().shape(Field::transmission).transmits; }
   [[nodiscard]] Scalar transmission() {
     return may_transmit() ? t_.textured(Field::transmission, Slot::transmission, 0) : t_.number(0);
   }
@@ -197,11 +197,6 @@ class CoatLayer {
   Scalar nv_, fresnel_;
 };
 
-bool has_sheen(SurfaceTerms& terms) {
-  const Color c = terms.builder().shape(Field::sheen_color).sheen_color;
-  return c.x > 0 || c.y > 0 || c.z > 0;
-}
-
 }  // namespace
 
 Triple metallic_roughness_color(SurfaceTerms& terms) {
@@ -211,13 +206,13 @@ Triple metallic_roughness_color(SurfaceTerms& terms) {
   std::vector<Incidence> lamps;
   for (const VisibleLight& light : terms.key().lights) lamps.push_back(terms.incidence(light));
   for (const Incidence& lamp : lamps) sum = sum + base.reflected(lamp.direction) * lamp.irradiance;
-  if (has_sheen(terms)) {
+  if (terms.builder().shape(Field::sheen_color).sheen) {
     SheenLayer sheen(terms, base);
     sum = sum * sheen.passed();
     for (const Incidence& lamp : lamps) sum = sum + sheen.reflected(lamp.direction) * lamp.irradiance;
   }
   sum = sum + terms.emission();
-  if (terms.builder().shape(Field::clearcoat).clearcoat > 0) {
+  if (terms.builder().shape(Field::clearcoat).clearcoat) {
     CoatLayer coat(terms);
     sum = sum * coat.passed();
     for (const Incidence& lamp : lamps) sum = sum + coat.reflected(lamp.direction) * lamp.irradiance;

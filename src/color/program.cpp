@@ -93,15 +93,30 @@ class RegisterFile {
 
 }  // namespace
 
+MaterialStructure structure_of(const Material& material) {
+  const auto is_positive = [](const Color& c) { return c.x > 0 || c.y > 0 || c.z > 0; };
+  MaterialStructure structure{material.model,
+                              material.alpha_mode,
+                              material.transmission > 0,
+                              material.thickness > 0,
+                              is_positive(material.sheen_color),
+                              material.clearcoat > 0,
+                              0};
+  for (std::size_t slot = 0; slot < kSlotCount; ++slot)
+    if (material.slots[slot].kind != TextureKind::none)
+      structure.textures = static_cast<std::uint16_t>(structure.textures | 1U << slot);
+  return structure;
+}
+
 Value ExpressionBuilder::emit(const Instruction& instruction) {
   const auto [it, is_new] = known_.try_emplace(instruction, static_cast<Value>(code_.size()));
   if (is_new) code_.push_back(instruction);
   return it->second;
 }
 
-const Material& ExpressionBuilder::note(FieldMask mask) {
+const MaterialStructure& ExpressionBuilder::note(FieldMask mask) {
   dependencies_.material |= mask;
-  return scene_.material(material_);
+  return structure_;
 }
 
 bool ExpressionBuilder::is_constant(Value value, float* number) const {
@@ -168,7 +183,7 @@ Value ExpressionBuilder::channel(Value lookup, unsigned channel) {
   return channel == 0 ? lookup : emit({Op::channel, channel, {lookup, 0, 0, 0, 0}});
 }
 
-ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result, MaterialId material) {
+ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result) {
   const std::vector<Instruction>& code = builder.code();
   // Last use of each value; 0: not needed. Operands come before their users, so one pass backwards finds all.
   std::vector<std::size_t> last_use(code.size(), 0);
@@ -192,7 +207,6 @@ ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>
   }
 
   ColorProgram program;
-  program.material = material;
   program.dependencies = builder.dependencies();
   RegisterFile registers;
   std::vector<std::uint16_t> place(code.size(), 0);

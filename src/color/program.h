@@ -78,10 +78,21 @@ struct Dependencies {
   std::vector<LightId> lights;  // whose colour parameters are read
 };
 
+/// What of a material decides the shape of its expressions: materials with equal structures share programs.
+struct MaterialStructure {
+  IlluminationModel model = IlluminationModel::metallic_roughness;
+  AlphaMode alpha_mode = AlphaMode::opaque;
+  bool transmits = false, thick = false, sheen = false, clearcoat = false;  // the value is not zero
+  std::uint16_t textures = 0;                                              // bit per Slot: there is one
+  auto operator<=>(const MaterialStructure&) const = default;
+};
+static_assert(kSlotCount <= 16);
+[[nodiscard]] MaterialStructure structure_of(const Material& material);
+
 /// Builds the expression of one node. All arithmetic happens in the order in which it is written.
 class ExpressionBuilder {
  public:
-  ExpressionBuilder(const Scene& scene, MaterialId material) : scene_(scene), material_(material) {
+  ExpressionBuilder(const Scene& scene, const MaterialStructure& structure) : scene_(scene), structure_(structure) {
     code_.reserve(kUsualLength);
     known_.reserve(kUsualLength);
   }
@@ -99,9 +110,11 @@ class ExpressionBuilder {
   [[nodiscard]] Value environment_map(Value x, Value y, Value z);
   [[nodiscard]] Value channel(Value lookup, unsigned channel);
 
-  /// The material for decisions about the expression's shape; what is looked at must be noted as a dependency.
-  [[nodiscard]] const Material& shape(Field field) { return note(mask_of(field)); }
-  [[nodiscard]] const TextureSlot& shape(Slot slot) { return note(mask_of(slot)).slot(slot); }
+  /// The structure for decisions about the expression's shape; what is looked at must be noted as a dependency.
+  [[nodiscard]] const MaterialStructure& shape(Field field) { return note(mask_of(field)); }
+  [[nodiscard]] bool has_texture(Slot slot) {
+    return (note(mask_of(slot)).textures >> static_cast<unsigned>(slot) & 1U) != 0;
+  }
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
   [[nodiscard]] const std::vector<Instruction>& code() const { return code_; }
@@ -110,12 +123,12 @@ class ExpressionBuilder {
  private:
   static constexpr std::size_t kUsualLength = 512;
 
-  const Material& note(FieldMask mask);
+  const MaterialStructure& note(FieldMask mask);
   Value emit(const Instruction& instruction);
   [[nodiscard]] bool is_constant(Value value, float* number) const;
 
   const Scene& scene_;
-  MaterialId material_;
+  MaterialStructure structure_;
   std::vector<Instruction> code_;
   std::unordered_map<Instruction, Value, InstructionHash> known_;
   Dependencies dependencies_;
@@ -133,12 +146,10 @@ struct ColorProgram {
   std::vector<Step> varying;  // run over all lanes
   std::uint16_t registers = 0;
   std::array<std::uint16_t, 4> result{};  // registers of R, G, B, A
-  MaterialId material;
   Dependencies dependencies;
 };
 
 /// Drops what `result` does not need, splits uniform from varying code, assigns registers.
-[[nodiscard]] ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result,
-                                  MaterialId material);
+[[nodiscard]] ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result);
 
 }  // namespace relook

@@ -72,7 +72,7 @@ class Programs {
       return key;
     });
   }
-  [[nodiscard]] const ColorProgram& program(std::uint32_t number) const { return *programs_[number]; }
+  [[nodiscard]] const BoundProgram& program(std::uint32_t number) const { return programs_[number]; }
   [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
  private:
@@ -101,14 +101,14 @@ class Programs {
   /// The slow way, for scenes with more lights than a signature holds.
   std::uint32_t number_of(const NodeKey& key) {
     const auto [it, is_new] = key_numbers_.try_emplace(key, static_cast<std::uint32_t>(programs_.size()));
-    if (is_new) programs_.push_back(&table_.get(scene_.scene(), key));
+    if (is_new) programs_.push_back(table_.get(scene_.scene(), key));
     return it->second;
   }
   template <class MakeKey>
   std::uint32_t number(const Signature& signature, const MakeKey& make_key) {
     if (has_last_ && signature == last_) return last_number_;
     const auto [it, is_new] = numbers_.try_emplace(signature, static_cast<std::uint32_t>(programs_.size()));
-    if (is_new) programs_.push_back(&table_.get(scene_.scene(), make_key()));
+    if (is_new) programs_.push_back(table_.get(scene_.scene(), make_key()));
     has_last_ = true;
     last_ = signature;
     last_number_ = it->second;
@@ -119,7 +119,7 @@ class Programs {
   ProgramTable& table_;
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
   std::map<NodeKey, std::uint32_t> key_numbers_;
-  std::vector<const ColorProgram*> programs_;
+  std::vector<BoundProgram> programs_;
   bool has_last_ = false;
   Signature last_;
   std::uint32_t last_number_ = 0;
@@ -148,25 +148,31 @@ class Batches {
 
 }  // namespace
 
-const ColorProgram& ProgramTable::get(const Scene& scene, const NodeKey& key) {
+BoundProgram ProgramTable::get(const Scene& scene, const NodeKey& key) {
   {
     const std::shared_lock lock(mutex_);
-    const auto it = programs_.find(key);
-    if (it != programs_.end()) return *it->second;
+    const auto it = bound_.find(key);
+    if (it != bound_.end()) return it->second;
   }
-  auto program = std::make_unique<const ColorProgram>(build_program(scene, key));
+  Shape shape{key.material.is_none() ? MaterialStructure{} : structure_of(scene.material(key.material)), key};
+  shape.second.material = MaterialId::none();
   const std::unique_lock lock(mutex_);
-  return *programs_.try_emplace(key, std::move(program)).first->second;
+  auto& program = programs_[shape];
+  if (!program) program = std::make_unique<const ColorProgram>(build_program(scene, shape.first, shape.second));
+  return bound_.try_emplace(key, BoundProgram{program.get(), key.material}).first->second;
 }
 
 void ProgramTable::forget(MaterialId material) {
-  std::erase_if(programs_, [&](const auto& entry) { return entry.first.material == material; });
+  std::erase_if(bound_, [&](const auto& entry) { return entry.first.material == material; });
 }
 void ProgramTable::forget_environment() {
-  std::erase_if(programs_, [](const auto& entry) { return entry.first.kind == NodeKind::environment; });
+  std::erase_if(bound_, [](const auto& entry) { return entry.first.kind == NodeKind::environment; });
+  std::erase_if(programs_, [](const auto& entry) { return entry.first.second.kind == NodeKind::environment; });
 }
-void ProgramTable::clear() { programs_.clear(); }
-std::size_t ProgramTable::size() const { return programs_.size(); }
+void ProgramTable::clear() {
+  bound_.clear();
+  programs_.clear();
+}
 
 struct Shader::Impl {
   const RayScene& scene;

@@ -13,20 +13,23 @@
 
 namespace relook {
 
-/// Programs by key, built on first use; thread-safe. Programs hold no parameter values, so they outlive colour edits.
+/// Programs by key, built on first use and shared between materials of the same structure; thread-safe. Programs hold no
+/// parameter values, so they outlive colour edits.
 class ProgramTable {
  public:
   /// `scene`: as it is now; programs are built from it.
-  [[nodiscard]] const ColorProgram& get(const Scene& scene, const NodeKey& key);
-  /// Drops programs whose structure may have changed: those of a material, of the environment, or all.
+  [[nodiscard]] BoundProgram get(const Scene& scene, const NodeKey& key);
+  /// To be called when the structure of a material, the environment's image, or the lights may have changed.
   void forget(MaterialId material);
   void forget_environment();
   void clear();
-  [[nodiscard]] std::size_t size() const;
 
  private:
-  mutable std::shared_mutex mutex_;
-  std::map<NodeKey, std::unique_ptr<const ColorProgram>> programs_;
+  using Shape = std::pair<MaterialStructure, NodeKey>;  // the key without its material
+
+  std::shared_mutex mutex_;
+  std::map<NodeKey, BoundProgram> bound_;
+  std::map<Shape, std::unique_ptr<const ColorProgram>> programs_;
 };
 
 /// Evaluates blocks of ray trees. Keeps its working memory and what it has looked up between calls; one per thread.

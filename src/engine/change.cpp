@@ -103,10 +103,11 @@ FieldMask ColorChange::fields_of(MaterialId material) const {
   return 0;
 }
 
-bool ColorChange::reaches(const ColorProgram& program) const {
-  if ((ambient && program.dependencies.ambient) || (environment && program.dependencies.environment)) return true;
-  if ((fields_of(program.material) & program.dependencies.material) != 0) return true;
-  const std::vector<LightId>& read = program.dependencies.lights;
+bool ColorChange::reaches(const BoundProgram& bound) const {
+  const Dependencies& read_by = bound.program->dependencies;
+  if ((ambient && read_by.ambient) || (environment && read_by.environment)) return true;
+  if ((fields_of(bound.material) & read_by.material) != 0) return true;
+  const std::vector<LightId>& read = read_by.lights;
   return std::ranges::any_of(lights, [&](LightId light) { return std::ranges::find(read, light) != read.end(); });
 }
 

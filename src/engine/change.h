@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "color/field.h"
+#include "color/evaluate.h"
 #include "color/illumination.h"
 #include "trace/grow.h"
 
@@ -21,8 +21,8 @@ struct ColorChange {
   }
   /// The changed fields of a material.
   [[nodiscard]] FieldMask fields_of(MaterialId material) const;
-  /// Can the change alter what a program with these dependencies, of this material, yields?
-  [[nodiscard]] bool reaches(const ColorProgram& program) const;
+  /// Can the change alter what a program yields?
+  [[nodiscard]] bool reaches(const BoundProgram& bound) const;
 };
 
 struct StepChange {

@@ -301,7 +301,7 @@ struct Replayer::Impl {
     result.classification = classify(state.scene(), delta);
     StepChange change = find_change(rays, state.scene(), delta, lights);
     rays.update(state.scene(), delta);
-    if (change.any_moved) level_is_current = false;
+    if (change.any_shadows) level_is_current = false;
     forget_programs(change);
     watch.lap(result.seconds.classify);
 

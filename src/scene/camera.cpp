@@ -172,15 +172,4 @@ Camera choose_camera(const LookDocument& document, std::string_view choice, std:
                    missing_name(document, Target::cameras, choice) + " (--camera auto frames the scene)");
 }
 
-CameraRay camera_ray(const Camera& camera, float x, float y) {
-  const float across = (2.0F * x / static_cast<float>(camera.width) - 1.0F) * camera.half_width;
-  const float down = (1.0F - 2.0F * y / static_cast<float>(camera.height)) * camera.half_height;
-  const float pixel = 2.0F * camera.half_height / static_cast<float>(camera.height);
-  const Direction offset = camera.right * across + camera.up * down;
-  if (camera.orthographic) return {camera.eye + offset, camera.forward, 0, pixel};
-  const Direction d = camera.forward + offset;
-  const float scale = 1.0F / std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
-  return {camera.eye, d * scale, pixel, 0};
-}
-
 }  // namespace relook

@@ -1,5 +1,6 @@
 // The fixed camera of a cache: chosen once from the command line, never edited.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,6 +28,15 @@ struct CameraRay {
 };
 
 /// The ray through image position (x, y) in pixels, (0, 0) the upper left corner of the upper left pixel.
-[[nodiscard]] CameraRay camera_ray(const Camera& camera, float x, float y);
+[[nodiscard]] inline CameraRay camera_ray(const Camera& camera, float x, float y) {
+  const float across = (2.0F * x / static_cast<float>(camera.width) - 1.0F) * camera.half_width;
+  const float down = (1.0F - 2.0F * y / static_cast<float>(camera.height)) * camera.half_height;
+  const float pixel = 2.0F * camera.half_height / static_cast<float>(camera.height);
+  const Direction offset = camera.right * across + camera.up * down;
+  if (camera.orthographic) return {camera.eye + offset, camera.forward, 0, pixel};
+  const Direction d = camera.forward + offset;
+  const float scale = 1.0F / std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+  return {camera.eye, d * scale, pixel, 0};
+}
 
 }  // namespace relook

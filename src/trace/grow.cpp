@@ -20,10 +20,7 @@ class Grower {
   Grower(const GrowScene& grow, std::uint32_t sample, TreeBlock& block) : g_(grow), sample_(sample), b_(block) {}
 
   std::uint32_t append(const SpawnedRay& ray, std::uint32_t parent) {
-    RayNode& node = b_.nodes.emplace_back();
-    node.parent = parent;
-    node.sample = sample_;
-    node.ray = ray;
+    b_.nodes.emplace_back(parent, sample_, ray);
     return static_cast<std::uint32_t>(b_.nodes.size() - 1);
   }
 

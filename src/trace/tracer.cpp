@@ -8,7 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <map>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -86,7 +87,7 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
     return;
   }
-  if (!optics.passes_light) return;  // opaque: the segment ends here
+  if (!optics.passes_light) return;  // opaque here: the segment ends
   query.crossings->push_back({placed.id, hit, RTCRayN_tfar(args->ray, 1, 0), placed.object->key});
   args->valid[0] = 0;
 }
@@ -122,7 +123,7 @@ struct Tracer::Impl {
     std::weak_ptr<const Mesh> mesh;  // expired: the address may belong to another mesh by now
     RTCScene scene = nullptr;
   };
-  std::unordered_map<const Mesh*, BottomLevel> bottom_levels;
+  std::map<std::pair<const Mesh*, bool>, BottomLevel> bottom_levels;  // by mesh and whether light may pass
 
   // At most AVX2: hosts that share a cache must agree in every bit, so they must run the same code.
   Impl() : device(rtcNewDevice("max_isa=avx2")) {
@@ -150,8 +151,9 @@ struct Tracer::Impl {
     });
   }
 
-  RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh) {
-    BottomLevel& level = bottom_levels[mesh.get()];
+  /// `may_pass_light`: shadow segments ask collect_crossings() at each hit; otherwise the first hit blocks them.
+  RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh, bool may_pass_light) {
+    BottomLevel& level = bottom_levels[{mesh.get(), may_pass_light}];
     if (level.scene != nullptr && level.mesh.lock() == mesh) return level.scene;
     if (level.scene != nullptr) rtcReleaseScene(level.scene);
     level.mesh = mesh;
@@ -167,7 +169,7 @@ struct Tracer::Impl {
     for (const Point& p : mesh->positions) positions = std::copy_n(&p.x, 3, positions);
     for (const auto& t : mesh->triangles) triangles = std::copy_n(t.data(), 3, triangles);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
-    rtcSetGeometryOccludedFilterFunction(geometry, collect_crossings);
+    if (may_pass_light) rtcSetGeometryOccludedFilterFunction(geometry, collect_crossings);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(level.scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -201,7 +203,7 @@ Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {
   for (std::size_t i = 0; i < top.placed.size(); ++i) {
     const RayObject& object = *top.placed[i].object;
     RTCGeometry instance = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, impl_->bottom_level(object.mesh));
+    rtcSetGeometryInstancedScene(instance, impl_->bottom_level(object.mesh, object.optics.passes_light || object.optics.cut_out));
     float columns[12];  // 3x4, column by column: Imath's rows are Embree's columns
     for (int column = 0; column < 4; ++column)
       std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);

@@ -65,7 +65,7 @@ class Tracer {
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  /// Objects that are not alive are left out. Bottom levels are made once per mesh and kept while an object uses them.
+  /// Objects that are not alive are left out. A change of what an object's optics let through needs a new top level. Bottom levels are made once per mesh and kept while an object uses them.
   [[nodiscard]] TopLevel build(std::span<const Placed> objects);
   [[nodiscard]] TopLevel build(const RayScene& scene);
 

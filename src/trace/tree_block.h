@@ -25,10 +25,14 @@ struct SpawnedRay {
 
 /// A node of a ray tree: a hit, or the environment when the ray left the scene.
 struct RayNode {
-  std::uint32_t parent = kNoNode;
+  // A constructor, so that a new node is not cleared byte by byte first.
+  RayNode(std::uint32_t above, std::uint32_t of_sample, const SpawnedRay& way)
+      : parent(above), sample(of_sample), ray(way) {}
+
+  std::uint32_t parent;
   std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode};
-  std::uint32_t sample = 0;  // within the tile
-  ObjectId object;           // none: miss
+  std::uint32_t sample;  // within the tile
+  ObjectId object;       // none: miss
   Hit hit;
   SpawnedRay ray;             // that led here
   std::uint8_t cut_mask = 0;  // branches that the Fresnel cut-off removed
@@ -64,7 +68,7 @@ struct TreeBlock {
   };
   [[nodiscard]] Mark mark() const { return {nodes.size(), lights.size(), filters.size()}; }
   void rewind(const Mark& mark) {
-    nodes.resize(mark.nodes);
+    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(mark.nodes), nodes.end());
     lights.resize(mark.lights);
     filters.resize(mark.filters);
   }
