@@ -56,8 +56,8 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::Range(0, 1024));
   verb.add_option("--atoms", structures.atoms, std::string("Depth at which nodes become atoms") + kRecorded)
       ->check(CLI::Range(0, 64));
-  verb.add_option("--shadow-bits", structures.shadow_bits, std::string("Bits of a shadow counter") + kRecorded)
-      ->check(CLI::Range(0, 16));
+  verb.add_option("--shadow-bits", arguments.shadow_bits, "Bits of a shadow counter, fixed by preprocess; 0: a flag")
+      ->check(CLI::Range(0, 4));
 }
 
 void add_float(CLI::App& verb, Arguments& arguments) {
@@ -144,6 +144,7 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.color_trees.empty())
     arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
+  arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
 }

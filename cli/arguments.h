@@ -28,6 +28,7 @@ struct Arguments {
   std::string output;
   ViewArguments view;
   StructureOptions structures;
+  std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
   std::size_t threads = 0;  // 0: all
   bool quiet = false, json = false;
   ProgressStyle progress = ProgressStyle::automatic;

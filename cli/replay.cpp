@@ -235,6 +235,10 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   CacheContent content = load_cache(cache);
   if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != content.scene_hash)
     require_sound({CacheFault::other_scene, "", ""}, cache);
+  if (arguments.shadow_bits.value_or(content.shadow_bits) != content.shadow_bits)
+    throw Error(ExitCode::cache_mismatch, cache, "",
+                "the cache holds shadow counters of " + std::to_string(content.shadow_bits) +
+                    " bits; preprocess again with --shadow-bits");
   const std::string scene_hash = content.scene_hash;
   const CacheSizes sizes = cache_sizes(cache);
 

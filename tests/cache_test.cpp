@@ -285,6 +285,28 @@ TEST(Cache, files_of_another_scene_or_view_are_refused) {
   EXPECT_EQ(fault_of(folder / "c"), CacheFault::other_options);
 }
 
+TEST(Cache, shadow_counters_are_kept_and_checked) {
+  const ScratchFolder folder("cache");
+  const auto counted_content = [](std::uint32_t counter) {
+    CacheContent content = small_content();
+    content.shadow_bits = 2;
+    const std::uint32_t blocked = content.paths.intern(std::vector<std::uint32_t>{0, 0, 3, 1, 0, 0, counter}).index();
+    for (PathId& path : content.trees[0].paths)
+      if (path == PathId(1)) path = PathId(blocked);  // one hit, either way
+    return content;
+  };
+  write_cache(folder / "c", counted_content(4));
+  CacheContent read;
+  ASSERT_EQ(read_cache(folder / "c", read).fault, CacheFault::none);
+  EXPECT_EQ(read.shadow_bits, 2U);
+  expect_equal(counted_content(4), read);
+  write_cache(folder / "c", counted_content(5));
+  EXPECT_EQ(fault_of(folder / "c"), CacheFault::damaged);
+  CacheContent more = counted_content(4);
+  more.shadow_bits = 3;
+  EXPECT_NE(options_hash(more), options_hash(read));
+}
+
 TEST(Cache, indices_out_of_range_are_refused_although_every_hash_fits) {
   const ScratchFolder folder("cache");
   const auto fault_after = [&](const std::function<void(CacheContent&)>& change) {

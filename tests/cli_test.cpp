@@ -195,7 +195,7 @@ TEST_F(Cli, structure_options_are_recorded_and_change_no_frame) {
   write_text(at("j.json"), kJournal);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("plain"), "--quiet"}).exit_code, 0);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("tight"), "--quiet", "--memory", "1.5M", "--ray-trees",
-                    "10%", "--tunnels", "0", "--groups", "0", "--shadow-bits", "2", "--atoms", "1"})
+                    "10%", "--tunnels", "0", "--groups", "0", "--shadow-bits", "0", "--atoms", "1"})
                 .exit_code,
             0);
   const Json plain = read_json(at("plain/report.json")), tight = read_json(at("tight/report.json"));
@@ -203,6 +203,30 @@ TEST_F(Cli, structure_options_are_recorded_and_change_no_frame) {
   EXPECT_EQ(tight["options"]["memory"], 1572864);
   EXPECT_EQ(tight["options"]["ray_trees"], 10);
   EXPECT_EQ(tight["options"]["groups"], 0);
+}
+
+TEST_F(Cli, shadow_bits_are_fixed_by_preprocess) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("counted"), "--resolution", "72x40", "--quiet", "--shadow-bits",
+                    "2"})
+                .exit_code,
+            0);
+  write_text(at("j.json"), kJournal);
+  const auto replay = [&](const std::string& cache, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"replay", at(cache), at("j.json"), "-o", at("run-" + cache), "--quiet"});
+    return relook(flags);
+  };
+  EXPECT_EQ(replay("c", {}).exit_code, 0);
+  EXPECT_EQ(replay("counted", {"--shadow-bits", "2", "--verify"}).exit_code, 0);
+  EXPECT_EQ(replay("counted", {}).exit_code, 0);
+  const Json plain = read_json(at("run-c/report.json")), counted = read_json(at("run-counted/report.json"));
+  EXPECT_EQ(plain["frames"], counted["frames"]);
+  EXPECT_EQ(counted["options"]["shadow_bits"], 2);
+  expect_error(replay("counted", {"--shadow-bits", "0"}), 3,
+               "the cache holds shadow counters of 2 bits; preprocess again with --shadow-bits");
+  expect_error(replay("c", {"--shadow-bits", "1"}), 3, "the cache holds shadow counters of 0 bits");
+  expect_error(replay("c", {"--shadow-bits", "5"}), 1, "--shadow-bits");
+  EXPECT_EQ(relook({"check", at("counted"), "--quiet"}).exit_code, 0);
 }
 
 TEST_F(Cli, a_cache_that_does_not_fit_is_refused_with_its_own_code_and_sentence) {

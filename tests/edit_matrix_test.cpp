@@ -178,22 +178,25 @@ struct MatrixCase {
   TestScene scene;
   std::uint32_t samples;
   ChangeClass kind;
+  std::uint32_t shadow_bits = 0;
 };
 
 void PrintTo(const MatrixCase& c, std::ostream* out) {
-  *out << test_scene_name(c.scene) << ", " << change_class_name(c.kind) << ", " << c.samples << " samples";
+  *out << test_scene_name(c.scene) << ", " << change_class_name(c.kind) << ", " << c.samples << " samples, "
+       << c.shadow_bits << " shadow bits";
 }
 
 class EditMatrix : public testing::TestWithParam<MatrixCase> {};
 
 std::string case_name(const testing::TestParamInfo<MatrixCase>& info) {
   return std::string(test_scene_name(info.param.scene)) + "_" + std::string(change_class_name(info.param.kind)) + "_" +
-         std::to_string(info.param.samples);
+         std::to_string(info.param.samples) +
+         (info.param.shadow_bits == 0 ? "" : "_shadow_bits_" + std::to_string(info.param.shadow_bits));
 }
 
 TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
-  const auto [which, samples, kind] = GetParam();
-  const ViewOptions view{samples, 6};
+  const auto [which, samples, kind, shadow_bits] = GetParam();
+  const ViewOptions view{samples, 6, shadow_bits};
   SceneState state = test_scene(which, 64 / samples + 24, 48 / samples + 18);
   Image image = preprocessed(state.scene(), view);
   Replayer replayer(std::move(state), std::move(image));
@@ -232,6 +235,13 @@ std::vector<MatrixCase> all_cases() {
     for (const std::uint32_t samples : {1U, 4U})
       for (const ChangeClass kind : {ChangeClass::color, ChangeClass::optical, ChangeClass::geometric})
         cases.push_back({scene, samples, kind});
+  for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study}) {
+    for (const std::uint32_t shadow_bits : {1U, 2U, 3U, 4U})
+      cases.push_back({scene, 1, ChangeClass::geometric, shadow_bits});
+    cases.push_back({scene, 1, ChangeClass::optical, 2});
+    cases.push_back({scene, 1, ChangeClass::color, 1});
+    cases.push_back({scene, 4, ChangeClass::geometric, 1});
+  }
   return cases;
 }
 

@@ -208,10 +208,12 @@ struct RandomCase {
   TestScene scene;
   std::uint32_t samples;
   std::size_t threads;
+  std::uint32_t shadow_bits = 0;
 };
 
 void PrintTo(const RandomCase& c, std::ostream* out) {
-  *out << test_scene_name(c.scene) << ", " << c.samples << " samples, " << c.threads << " threads";
+  *out << test_scene_name(c.scene) << ", " << c.samples << " samples, " << c.threads << " threads, " << c.shadow_bits
+       << " shadow bits";
 }
 
 class RandomJournal : public testing::TestWithParam<RandomCase> {
@@ -221,7 +223,7 @@ class RandomJournal : public testing::TestWithParam<RandomCase> {
 
 std::string random_case_name(const testing::TestParamInfo<RandomCase>& info) {
   return std::string(test_scene_name(info.param.scene)) + "_" + std::to_string(info.param.samples) + "_samples_" +
-         std::to_string(info.param.threads) + "_threads";
+         std::to_string(info.param.threads) + "_threads_" + std::to_string(info.param.shadow_bits) + "_bits";
 }
 
 Replayer replayer_of(TestScene scene, ViewOptions view) {
@@ -231,12 +233,12 @@ Replayer replayer_of(TestScene scene, ViewOptions view) {
 }
 
 TEST_P(RandomJournal, EveryFrameIsAFullRender) {
-  const auto [scene, samples, threads] = GetParam();
+  const auto [scene, samples, threads, shadow_bits] = GetParam();
   const std::uint64_t seed = seed_of_run();
   std::cout << "RELOOK_SEED=" << seed << "\n";
   set_thread_count(threads);
   Dice dice(seed + 7919 * samples + static_cast<std::uint64_t>(scene));
-  const ViewOptions view{samples, 5};
+  const ViewOptions view{samples, 5, shadow_bits};
   Replayer replayer = replayer_of(scene, view);
   std::size_t steps_that_changed = 0;
   for (std::size_t k = 1; k <= kSteps; ++k) {
@@ -264,12 +266,12 @@ TEST_P(RandomJournal, EveryFrameIsAFullRender) {
 }
 
 TEST_P(RandomJournal, UndoneToTheStartGivesTheFirstFrameBack) {
-  const auto [scene, samples, threads] = GetParam();
+  const auto [scene, samples, threads, shadow_bits] = GetParam();
   const std::uint64_t seed = seed_of_run();
   std::cout << "RELOOK_SEED=" << seed << "\n";
   set_thread_count(threads);
   Dice dice(seed + 104729 * samples + static_cast<std::uint64_t>(scene));
-  Replayer replayer = replayer_of(scene, {samples, 5});
+  Replayer replayer = replayer_of(scene, {samples, 5, shadow_bits});
   const Json first_look = replayer.state().document().look;
   std::vector<Frame> frames = {replayer.image().frame};
   std::vector<Change> changes;
@@ -292,7 +294,9 @@ TEST_P(RandomJournal, UndoneToTheStartGivesTheFirstFrameBack) {
 INSTANTIATE_TEST_SUITE_P(Seeded, RandomJournal,
                          testing::Values(RandomCase{TestScene::spheres, 1, 1}, RandomCase{TestScene::cards, 1, 2},
                                          RandomCase{TestScene::study, 1, 2}, RandomCase{TestScene::spheres, 4, 2},
-                                         RandomCase{TestScene::cards, 4, 1}, RandomCase{TestScene::study, 4, 1}),
+                                         RandomCase{TestScene::cards, 4, 1}, RandomCase{TestScene::study, 4, 1},
+                                         RandomCase{TestScene::spheres, 1, 2, 1}, RandomCase{TestScene::cards, 1, 2, 2},
+                                         RandomCase{TestScene::study, 1, 1, 3}, RandomCase{TestScene::cards, 4, 2, 4}),
                          random_case_name);
 
 }  // namespace

@@ -6,7 +6,9 @@ namespace {
 struct Reader {
   std::span<const std::uint32_t> words;
   std::span<const Hit> hits;
-  std::size_t lights, word = 0, hit = 0;
+  std::size_t lights;
+  std::uint32_t shadow_bits;
+  std::size_t word = 0, hit = 0;
 
   TreeNode node() {
     TreeNode node;
@@ -18,9 +20,14 @@ struct Reader {
     node.flags = words[word++];
     node.hit = hits[hit++];
     for (std::size_t i = 0; i < lights; ++i)
-      node.lights.push_back({static_cast<ShadowState>((words[word + i / 16] >> (2 * (i % 16))) & 3U), {}});
+      node.lights.push_back({static_cast<ShadowState>((words[word + i / 16] >> (2 * (i % 16))) & 3U), {}, {}, {}});
     word += (lights + 15) / 16;
     for (TreeLight& light : node.lights) {
+      if (light.state == ShadowState::blocked && shadow_bits > 0) {
+        const std::uint32_t count = words[word++];
+        for (std::uint32_t i = 0; i < count; ++i) light.transparent.push_back(words[word++]);
+        for (std::uint32_t i = 0; i < count + 1; ++i) light.counters.push_back(words[word++]);
+      }
       if (light.state != ShadowState::filtered) continue;
       for (std::uint32_t count = words[word++]; count > 0; --count)
         light.filters.push_back({words[word++], hits[hit++]});
@@ -35,7 +42,7 @@ struct Reader {
 
 TreeNode read_tree(const Image& image, std::size_t tile, std::size_t sample, std::size_t lights) {
   const TileTrees& trees = image.trees[tile];
-  Reader reader{image.paths.words(trees.paths[sample]), trees.hits_of(sample), lights};
+  Reader reader{image.paths.words(trees.paths[sample]), trees.hits_of(sample), lights, image.view.shadow_bits};
   return reader.node();
 }
 
@@ -70,6 +77,9 @@ bool same_tree(const TreeNode& a, const Scene& scene_a, const TreeNode& b, const
   for (std::size_t i = 0; i < a.lights.size(); ++i) {
     const TreeLight &light_a = a.lights[i], &light_b = b.lights[i];
     if (light_a.state != light_b.state || light_a.filters.size() != light_b.filters.size()) return false;
+    if (light_a.counters != light_b.counters || light_a.transparent.size() != light_b.transparent.size()) return false;
+    for (std::size_t k = 0; k < light_a.transparent.size(); ++k)
+      if (!same_object(light_a.transparent[k], light_b.transparent[k])) return false;
     for (std::size_t k = 0; k < light_a.filters.size(); ++k)
       if (!same_object(light_a.filters[k].object, light_b.filters[k].object) ||
           light_a.filters[k].hit != light_b.filters[k].hit)

@@ -18,6 +18,7 @@ struct TreeCrossing {
 struct TreeLight {
   ShadowState state = ShadowState::facing_away;
   std::vector<TreeCrossing> filters;
+  std::vector<std::uint32_t> transparent, counters;  // of a blocked light, where shadows are counted
 };
 
 struct TreeNode {
@@ -40,7 +41,7 @@ struct TreeSize {
 /// Rays and shadow segments of all trees.
 [[nodiscard]] TreeSize size_of(const Image& image, std::size_t lights);
 
-/// Same objects (by key), branches, shadow states and hits, bit for bit.
+/// Same objects (by key), branches, shadow states, counters and hits, bit for bit.
 [[nodiscard]] bool same_tree(const TreeNode& a, const Scene& scene_a, const TreeNode& b, const Scene& scene_b);
 /// Number of samples whose trees differ; both images have the same size and view.
 [[nodiscard]] std::size_t different_trees(const Image& a, const Scene& scene_a, const Image& b, const Scene& scene_b);

@@ -20,6 +20,7 @@ class Pool {
     Loan(const Loan&) = delete;
     Loan& operator=(const Loan&) = delete;
     T* operator->() const { return object_.get(); }
+    T& operator*() const { return *object_; }
 
    private:
     Pool& pool_;

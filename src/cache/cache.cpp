@@ -160,6 +160,7 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
   content.camera = manifest.camera;
   content.samples = manifest.samples;
   content.max_depth = manifest.max_depth;
+  content.shadow_bits = manifest.shadow_bits;
   content.objects = manifest.objects;
   content.lights = manifest.lights;
   content.scene_hash = manifest.identity.scene_hash;
@@ -173,9 +174,9 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
   constexpr std::size_t kFirstTrees = 5;
   std::vector<CacheAnswer> answers = read_parts(std::span(parts).first(kFirstTrees), reading);
   if (is_sound(answers)) {
+    const PathLayout layout{content.lights, content.shadow_bits};
     for (std::size_t i = 0; i < content.paths.size(); ++i)
-      reading.hits_of_path.push_back(
-          hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), content.lights));
+      reading.hits_of_path.push_back(hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
     const std::size_t tiles = cache_tile_count(content.camera);
     content.trees.resize(tiles);
     content.sample_colors.resize(tiles);
@@ -212,8 +213,10 @@ std::string_view sentence(CacheFault fault) {
 }
 
 std::string options_hash(const CacheContent& content) {
-  const Json options{
-      {"camera", camera_json(content.camera)}, {"samples", content.samples}, {"max_depth", content.max_depth}};
+  const Json options{{"camera", camera_json(content.camera)},
+                     {"samples", content.samples},
+                     {"max_depth", content.max_depth},
+                     {"shadow_bits", content.shadow_bits}};
   return hash128(bytes_of(options.dump()));
 }
 
@@ -234,6 +237,7 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
   manifest.camera = content.camera;
   manifest.samples = content.samples;
   manifest.max_depth = content.max_depth;
+  manifest.shadow_bits = content.shadow_bits;
   manifest.objects = content.objects;
   manifest.lights = content.lights;
 

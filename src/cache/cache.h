@@ -20,11 +20,11 @@ struct CacheContent {
   LookDocument document;  // with meshes and encoded images
   std::shared_ptr<PyramidStore> pyramids;
   Camera camera;
-  std::uint32_t samples = 1, max_depth = 6;
-  std::string scene_hash;                 // XXH3-128 over the scene file's bytes and the look patch
-  std::uint32_t objects = 0, lights = 0;  // of the compiled scene: all slots; living lights
-  std::vector<Rgba> frame;                // [height * width]
-  PathTable paths;
+  std::uint32_t samples = 1, max_depth = 6, shadow_bits = 0;
+  std::string scene_hash;                        // XXH3-128 over the scene file's bytes and the look patch
+  std::uint32_t objects = 0, lights = 0;         // of the compiled scene: all slots; living lights
+  std::vector<Rgba> frame;                       // [height * width]
+  PathTable paths;                               // laid out for `lights` and `shadow_bits`
   std::vector<TileTrees> trees;                  // [tiles]
   std::vector<std::vector<Rgba>> sample_colors;  // [tiles][samples]
 };

@@ -121,10 +121,11 @@ void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& c
   check_sound(!offsets.empty() && offsets.front() == 0 && offsets.back() == words.size() &&
                   std::is_sorted(offsets.begin(), offsets.end(), std::less_equal<>()),
               "the offsets of section offsets do not increase");
+  const PathLayout layout{content.lights, content.shadow_bits};
   content.paths = PathTable::from_columns(std::move(words), std::move(offsets));
   for (std::size_t i = 0; i < content.paths.size(); ++i) {
     const auto path = content.paths.words(PathId(static_cast<std::uint32_t>(i)));
-    const std::vector<std::string> broken = broken_invariants(path, content.objects, content.lights);
+    const std::vector<std::string> broken = broken_invariants(path, content.objects, layout);
     check_sound(broken.empty(), broken.empty() ? "" : "path " + std::to_string(i) + ": " + broken.front());
   }
 }

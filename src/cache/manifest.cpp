@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "trace/shadow_counter.h"
 
 namespace relook {
 namespace {
@@ -78,6 +79,7 @@ Json content_json(const Manifest& manifest) {
           {"camera", camera_json(manifest.camera)},
           {"samples", manifest.samples},
           {"max_depth", manifest.max_depth},
+          {"shadow_bits", manifest.shadow_bits},
           {"objects", manifest.objects},
           {"lights", manifest.lights},
           {"files", std::move(files)}};
@@ -95,6 +97,7 @@ Manifest read_content(const JsonView& view) {
   manifest.camera = read_camera(view.at("camera"));
   manifest.samples = static_cast<std::uint32_t>(view.at("samples").integer(1, kMostSamples));
   manifest.max_depth = static_cast<std::uint32_t>(view.at("max_depth").integer(1, kMostDepth));
+  manifest.shadow_bits = static_cast<std::uint32_t>(view.at("shadow_bits").integer(0, ShadowCounter::kMostBits));
   manifest.objects = static_cast<std::uint32_t>(view.at("objects").integer(0, kMostEntities));
   manifest.lights = static_cast<std::uint32_t>(view.at("lights").integer(0, kMostEntities));
   const JsonView files = view.at("files");

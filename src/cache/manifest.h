@@ -23,7 +23,7 @@ struct CacheFile {
 struct Manifest {
   CacheIdentity identity;
   Camera camera;
-  std::uint32_t samples = 1, max_depth = 6;
+  std::uint32_t samples = 1, max_depth = 6, shadow_bits = 0;
   std::uint32_t objects = 0, lights = 0;
   std::vector<CacheFile> files;  // by name
 };

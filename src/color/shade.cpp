@@ -226,8 +226,8 @@ void Shader::shade(const TreeBlock& block, std::span<const std::uint32_t> roots,
 }
 
 void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
-                 std::vector<NodeKey>& keys) {
-  for (PathCursor cursor(path, lights.size()); !cursor.at_end();) {
+                 std::uint32_t shadow_bits, std::vector<NodeKey>& keys) {
+  for (PathCursor cursor(path, {lights.size(), shadow_bits}); !cursor.at_end();) {
     const PathNode node = cursor.next();
     if (node.is_miss()) {
       keys.emplace_back();
@@ -235,14 +235,14 @@ void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std
     }
     NodeKey key = surface_key(scene, node.object(), node.inside());
     key.children = static_cast<std::uint8_t>(node.flags & 0xFU);
-    std::size_t word = 0;
+    EntryReader entries(node.entries, shadow_bits);
     for (std::uint32_t light = 0; light < lights.size(); ++light) {
       const ShadowState state = shadow_state(node.lights, light);
       note_light(key, lights[light], light, state);
+      const LightEntry entry = entries.next(state);
       if (state != ShadowState::filtered) continue;
-      const std::uint32_t count = node.filters[word++];
-      for (std::uint32_t f = 0; f < count; ++f) {
-        keys.push_back(filter_key(scene, ObjectId(node.filters[word++])));
+      for (const std::uint32_t object : entry.objects) {
+        keys.push_back(filter_key(scene, ObjectId(object)));
         keys.push_back(keys.back());
         keys.back().inside = true;
       }

@@ -47,8 +47,8 @@ class Shader {
 };
 
 /// The keys of all nodes and filters of a path, appended: with them the colours that an edit can change are found from
-/// paths alone. `lights`: the light order in which the path was recorded.
+/// paths alone. `lights`: the light order in which the path was recorded, with `shadow_bits`.
 void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
-                 std::vector<NodeKey>& keys);
+                 std::uint32_t shadow_bits, std::vector<NodeKey>& keys);
 
 }  // namespace relook

@@ -16,15 +16,19 @@ std::uint64_t triangle_count(const Scene& scene, std::uint32_t object_index) {
 }
 
 /// Triangles of the objects that a sample with this path hits, in the order of its hits.
-std::vector<std::uint64_t> triangles_hit(const Scene& scene, std::span<const std::uint32_t> words) {
+std::vector<std::uint64_t> triangles_hit(const Scene& scene, std::span<const std::uint32_t> words,
+                                         const PathLayout& layout) {
   std::vector<std::uint64_t> triangles;
-  for (PathCursor cursor(words, scene.light_order.size()); !cursor.at_end();) {
+  for (PathCursor cursor(words, layout); !cursor.at_end();) {
     const PathNode node = cursor.next();
     if (node.is_miss()) continue;
     triangles.push_back(triangle_count(scene, node.object_word));
-    for (std::size_t i = 0; i < node.filters.size();) {
-      const std::uint32_t count = node.filters[i++];
-      for (std::uint32_t k = 0; k < count; ++k) triangles.push_back(triangle_count(scene, node.filters[i++]));
+    EntryReader entries(node.entries, layout.shadow_bits);
+    for (std::size_t light = 0; light < layout.lights; ++light) {
+      const ShadowState state = shadow_state(node.lights, light);
+      const LightEntry entry = entries.next(state);
+      if (state != ShadowState::filtered) continue;
+      for (const std::uint32_t object : entry.objects) triangles.push_back(triangle_count(scene, object));
     }
   }
   return triangles;
@@ -39,6 +43,7 @@ CacheContent cache_content(const SceneState& state, Image image, std::string sce
   content.camera = state.scene().camera;
   content.samples = image.view.samples;
   content.max_depth = image.view.max_depth;
+  content.shadow_bits = image.view.shadow_bits;
   content.scene_hash = std::move(scene_hash);
   content.objects = static_cast<std::uint32_t>(state.scene().objects.size());
   content.lights = static_cast<std::uint32_t>(state.scene().light_order.size());
@@ -52,8 +57,9 @@ CacheContent cache_content(const SceneState& state, Image image, std::string sce
 std::string broken_hits(const Scene& scene, const Image& image) {
   std::vector<std::vector<std::uint64_t>> limits;
   limits.reserve(image.paths.size());
+  const PathLayout layout{scene.light_order.size(), image.view.shadow_bits};
   for (std::size_t i = 0; i < image.paths.size(); ++i)
-    limits.push_back(triangles_hit(scene, image.paths.words(PathId(static_cast<std::uint32_t>(i)))));
+    limits.push_back(triangles_hit(scene, image.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
   for (const TileTrees& tile : image.trees) {
     for (std::size_t sample = 0; sample < tile.paths.size(); ++sample) {
       const std::vector<std::uint64_t>& limit = limits[tile.paths[sample].index()];
@@ -76,7 +82,7 @@ CacheAnswer restore_image(CacheContent content, RestoredImage& restored) {
   if (state->scene().objects.size() != content.objects || state->scene().light_order.size() != content.lights)
     return {CacheFault::damaged, "look.json", "the look document does not have the objects and lights of the paths"};
   Image image;
-  image.view = {content.samples, content.max_depth};
+  image.view = {content.samples, content.max_depth, content.shadow_bits};
   image.frame = {camera.width, camera.height, std::move(content.frame)};
   image.paths = std::move(content.paths);
   image.trees = std::move(content.trees);

@@ -1,9 +1,28 @@
 #include "engine/change.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace relook {
 namespace {
+
+/// A box around an object, in the world, with room for rounding.
+Box world_bounds(const RayObject& object) {
+  const Box& local = object.mesh->bounds;
+  Box box;
+  for (unsigned corner = 0; corner < 8 && !local.isEmpty(); ++corner) {
+    const Point at((corner & 1U) != 0 ? local.max.x : local.min.x, (corner & 2U) != 0 ? local.max.y : local.min.y,
+                   (corner & 4U) != 0 ? local.max.z : local.min.z);
+    box.extendBy(at * object.to_world);
+  }
+  if (box.isEmpty()) return box;
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max(largest, std::max(std::fabs(box.min[axis]), std::fabs(box.max[axis])));
+  const float margin = 0x1p-16F * largest * object.condition;
+  const Point around(margin, margin, margin);
+  return Box(box.min - around, box.max + around);
+}
 
 /// What decides where a cut-out surface has holes.
 bool same_holes(const Material& a, const Material& b) {
@@ -137,15 +156,44 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
   return change;
 }
 
-void build_selection(StepChange& change, const RayScene& ray_scene, Tracer& tracer) {
+std::vector<ObjectId> selection_of(const StepChange& change) {
+  std::vector<ObjectId> selection;
+  for (std::uint32_t i = 0; i < change.rays.objects.size(); ++i)
+    if ((change.rays.objects[i] & (RayChange::moved | RayChange::shadows)) != 0) selection.emplace_back(i);
+  return selection;
+}
+
+ChangeBoxes boxes_of(const StepChange& change, const RayScene& ray_scene, std::span<const ObjectId> absent) {
+  const RayChange& rays = change.rays;
+  ChangeBoxes boxes;
+  std::vector<Box> moved, before, after;
+  for (ObjectId id : selection_of(change)) {
+    const RayObject& now = ray_scene.object(id);
+    const bool is_moved = (rays.flags(id) & RayChange::moved) != 0, shadows = (rays.flags(id) & RayChange::shadows) != 0;
+    const bool is_there = now.alive && !std::ranges::binary_search(absent, id);
+    if (is_there && is_moved) moved.push_back(world_bounds(now));
+    if (is_there && shadows) after.push_back(world_bounds(now));
+    boxes.condition = std::max(boxes.condition, now.condition);
+    if (!shadows || rays.before_index[id.index()] == kNoNode) continue;
+    const RayObject& then = rays.before[rays.before_index[id.index()]];
+    if (then.alive) before.push_back(world_bounds(then));
+    boxes.condition = std::max(boxes.condition, then.condition);
+  }
+  boxes.moved = box_set(moved);
+  boxes.shadows_before = box_set(before);
+  boxes.shadows_after = box_set(after);
+  return boxes;
+}
+
+void build_selection(StepChange& change, const RayScene& ray_scene, std::span<const ObjectId> absent, Tracer& tracer) {
   RayChange& rays = change.rays;
   std::vector<Tracer::Placed> moved, before, after;
-  for (std::uint32_t i = 0; i < rays.objects.size(); ++i) {
-    const ObjectId id(i);
-    if ((rays.flags(id) & RayChange::moved) != 0) moved.push_back({id, &ray_scene.object(id)});
+  for (ObjectId id : selection_of(change)) {
+    const bool is_there = !std::ranges::binary_search(absent, id);
+    if (is_there && (rays.flags(id) & RayChange::moved) != 0) moved.push_back({id, &ray_scene.object(id)});
     if ((rays.flags(id) & RayChange::shadows) == 0) continue;
-    after.push_back({id, &ray_scene.object(id)});
-    if (rays.before_index[i] != kNoNode) before.push_back({id, &rays.before[rays.before_index[i]]});
+    if (is_there) after.push_back({id, &ray_scene.object(id)});
+    if (rays.before_index[id.index()] != kNoNode) before.push_back({id, &rays.before[rays.before_index[id.index()]]});
   }
   if (!moved.empty()) rays.moved_after = tracer.build(moved);
   if (!before.empty()) rays.shadows_before = tracer.build(before);

@@ -5,6 +5,7 @@
 
 #include "color/evaluate.h"
 #include "color/illumination.h"
+#include "region/tunnel.h"
 #include "trace/grow.h"
 
 namespace relook {
@@ -32,15 +33,22 @@ struct StepChange {
 
   /// True if ray trees can change at all.
   [[nodiscard]] bool touches_rays() const { return any_moved || any_shadows || any_respawns || rays.lights_changed; }
-  /// True if every stored segment may have to be tested, not only those of paths that name a changed object.
-  [[nodiscard]] bool touches_all_paths() const { return any_moved || any_shadows || rays.lights_changed; }
+  /// True if segments of paths that do not name a changed object may meet one now, or did so before.
+  [[nodiscard]] bool touches_segments() const { return any_moved || any_shadows; }
 };
 
 /// `ray_scene`: as before the edit; `scene`: as after it. Top levels are not built yet.
 [[nodiscard]] StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,
                                      const std::vector<LightId>& old_lights);
 
+/// Objects that have flag `moved` or `shadows`, increasing.
+[[nodiscard]] std::vector<ObjectId> selection_of(const StepChange& change);
+
+/// Where the selection was and is, for tests against tunnels. `absent`: objects that are nowhere now, increasing.
+[[nodiscard]] ChangeBoxes boxes_of(const StepChange& change, const RayScene& ray_scene,
+                                   std::span<const ObjectId> absent = {});
+
 /// Builds the selection's top levels. `ray_scene`: as after the edit.
-void build_selection(StepChange& change, const RayScene& ray_scene, Tracer& tracer);
+void build_selection(StepChange& change, const RayScene& ray_scene, std::span<const ObjectId> absent, Tracer& tracer);
 
 }  // namespace relook

@@ -51,7 +51,7 @@ class TileRenderer {
   void keep(TileRecord& record) {
     for (std::uint32_t root : roots_) {
       words_.clear();
-      pack(block_, root, grow_.scene.scene().light_order.size(), words_, record.trees.hits);
+      pack(block_, root, grow_.layout(), words_, record.trees.hits);
       record.trees.paths.push_back(record.paths.intern(words_));
       record.trees.first_hit.push_back(static_cast<std::uint32_t>(record.trees.hits.size()));
     }
@@ -86,7 +86,8 @@ void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint
 void render_tiles(const Scene& scene, Image& image, bool keep, RenderStats& stats, const Progress& progress) {
   const auto start = Clock::now();
   const RayScene ray_scene(scene);
-  Tracer tracer;
+  const std::uint32_t shadow_bits = keep ? image.view.shadow_bits : 0;  // colours do not depend on counters
+  Tracer tracer(shadow_bits > 0);
   const Tracer::TopLevel level = tracer.build(ray_scene);
   stats.build_seconds = seconds_since(start);
 
@@ -94,7 +95,7 @@ void render_tiles(const Scene& scene, Image& image, bool keep, RenderStats& stat
   const std::uint32_t width = scene.camera.width, height = scene.camera.height;
   const std::size_t tiles = tile_count(width, height);
   image.frame = {width, height, std::vector<Rgba>(std::size_t{width} * height)};
-  const GrowScene grow{ray_scene, &level, image.view.max_depth};
+  const GrowScene grow{ray_scene, &level, image.view.max_depth, shadow_bits};
   ProgramTable programs;
   std::vector<GrowCounters> counters(tiles);
   std::vector<TileRecord> records(keep ? tiles : 0);

@@ -4,11 +4,11 @@
 #include <chrono>
 #include <cstring>
 
+#include "base/error.h"
 #include "base/parallel.h"
-#include "base/pool.h"
-#include "color/shade.h"
-#include "engine/change.h"
 #include "engine/sampling.h"
+#include "engine/scene_level.h"
+#include "engine/tile_update.h"
 
 namespace relook {
 namespace {
@@ -28,38 +28,34 @@ class StopWatch {
   Clock::time_point last_ = Clock::now();
 };
 
-/// What a step has to do with the samples of one path.
-struct PathTask {
-  bool update = false;  // their ray trees may change
-  bool shade = false;   // their colours may
-};
-
-/// What became of the samples of one tile.
-struct TileUpdate {
-  std::vector<std::uint32_t> shaded;  // samples with new colours, increasing
-  std::vector<Rgba> colors;           // of `shaded`
-  std::vector<std::uint32_t> packed;  // samples with new trees, increasing
-  PathTable paths;                    // of `packed`, numbered within the tile
-  std::vector<PathId> packed_paths;
-  std::vector<Hit> hits;
-  std::vector<std::uint32_t> first_hit{0};
-  GrowCounters counters;
-};
-
-std::uint64_t segments_of(std::span<const std::uint32_t> path, std::size_t lights) {
-  std::uint64_t segments = 0;
-  for (PathCursor cursor(path, lights); !cursor.at_end();) {
-    const PathNode node = cursor.next();
-    ++segments;
-    for (std::size_t light = 0; !node.is_miss() && light < lights; ++light)
-      segments += shadow_state(node.lights, light) != ShadowState::facing_away ? 1U : 0U;
-  }
-  return segments;
-}
-
 bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
 
-constexpr std::size_t kChunkSamples = 2048;
+/// Colours of single samples in place of the stored ones: those of an intermediate frame of a drag.
+struct Overlay {
+  std::vector<std::uint32_t> samples;  // increasing
+  std::vector<Rgba> colors;
+};
+
+/// Puts the new trees of a tile in place of the old ones. `ids`: of the update's paths in the image's table.
+void store_trees(TileTrees& trees, const TileUpdate& update, const std::vector<PathId>& ids) {
+  TileTrees next;
+  next.paths = std::move(trees.paths);
+  next.first_hit.reserve(trees.first_hit.size());
+  next.first_hit.push_back(0);
+  next.hits.reserve(trees.hits.size());
+  std::size_t k = 0;
+  for (std::uint32_t sample = 0; sample < next.paths.size(); ++sample) {
+    std::span<const Hit> hits = trees.hits_of(sample);
+    if (k < update.packed.size() && update.packed[k] == sample) {
+      next.paths[sample] = ids[update.packed_paths[k].index()];
+      hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
+      ++k;
+    }
+    next.hits.insert(next.hits.end(), hits.begin(), hits.end());
+    next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
+  }
+  trees = std::move(next);
+}
 
 }  // namespace
 
@@ -68,30 +64,53 @@ struct Replayer::Impl {
   Image image;
   RayScene rays;
   std::vector<LightId> lights;  // light order of the stored paths
-  std::uint64_t segments = 0;
+  PathIndex index;
+  PathClasses classes;
+  std::vector<ObjectId> atoms;  // see atoms_of(); empty without atoms
+  ImageRegions regions;
+  std::vector<std::uint64_t> tile_segments;
+  std::uint64_t segments = 0, samples_total = 0;
   std::size_t compact_paths;  // size of the path table when it last held no unused paths
   ProgramTable programs;
-  std::unique_ptr<Tracer> tracer;  // made when a step first needs rays
-  Tracer::TopLevel level;
-  bool level_is_current = false;
+  std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
+  std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
+  std::vector<Overlay> overlays;      // by tile, while objects are lifted
 
-  Impl(SceneState s, Image i)
+  Impl(SceneState s, Image i, const RegionOptions& options)
       : state(std::move(s)),
         image(std::move(i)),
         rays(state.scene()),
         lights(state.scene().light_order),
+        regions(options),
         compact_paths(image.paths.size()) {
-    segments = count_segments();
+    if (regions.options().atoms > 0) atoms = atoms_of(state, regions.options().atoms);
+    for (const TileTrees& tile : image.trees) samples_total += tile.paths.size();
+    index_paths();
+    count_segments();
+    regions.build_groups(image, class_of());
   }
 
-  [[nodiscard]] std::uint64_t count_segments() const {
-    std::vector<std::uint64_t> of_path(image.paths.size());
-    for (std::uint32_t p = 0; p < of_path.size(); ++p)
-      of_path[p] = segments_of(image.paths.words(PathId(p)), lights.size());
-    std::uint64_t sum = 0;
-    for (const TileTrees& tile : image.trees)
-      for (PathId path : tile.paths) sum += of_path[path.index()];
-    return sum;
+  /// Of the stored paths.
+  [[nodiscard]] PathLayout layout() const { return {lights.size(), image.view.shadow_bits}; }
+  [[nodiscard]] ClassOf class_of() const {
+    return [this](PathId path) { return classes.of(path); };
+  }
+  [[nodiscard]] GrowScene grow(const Tracer::TopLevel* scene_level) const {
+    return {rays, scene_level, image.view.max_depth, image.view.shadow_bits};
+  }
+
+  void index_paths() {
+    index.extend(image.paths, layout());
+    classes.extend(image.paths, layout(), atoms);
+  }
+
+  void count_segments() {
+    tile_segments.assign(image.trees.size(), 0);
+    parallel_for(image.trees.size(), [&](std::size_t tile) {
+      for (PathId path : image.trees[tile].paths) tile_segments[tile] += index.segments(path);
+    });
+    segments = 0;
+    for (std::uint64_t count : tile_segments) segments += count;
   }
 
   void forget_programs(const StepChange& change) {
@@ -103,181 +122,107 @@ struct Replayer::Impl {
     if (change.colors.environment) programs.forget_environment();
   }
 
-  void prepare_rays(StepChange& change) {
+  // ---- one pass over the image
+
+  /// What one pass did, for the report.
+  struct PassResult {
+    std::vector<TileUpdate> updates;  // by tile
+    std::vector<TileWork> works;
+  };
+
+  /// Works `change` out against the stored trees; `absent`: objects that are in no ray tree afterwards.
+  PassResult run(StepChange& change, std::span<const ObjectId> absent, bool keeps_trees, StepResult& result,
+                 StopWatch& watch) {
+    const PathTasks tasks = find_path_tasks(
+        {rays, image.paths, index, lights, image.view.shadow_bits, classes}, change, programs);
+    watch.lap(result.seconds.select);
+    const Tracer::TopLevel* scene_level = nullptr;
+    if (change.touches_rays()) {
+      if (!level) level = std::make_unique<SceneLevel>(image.view.shadow_bits > 0);
+      scene_level = &level->current(rays, absent);
+      build_selection(change, rays, absent, level->tracer());
+    }
+    const GrowScene scene = grow(scene_level);
+    ChangeBoxes boxes;
+    const std::vector<LightEnd> ends = light_ends(state.scene());
+    const bool uses_tunnels =
+        regions.options().tunnels > 0 && change.touches_segments() && !change.rays.lights_changed;
+    if (uses_tunnels) {
+      boxes = boxes_of(change, rays, absent);
+      boxes.count_blockers = image.view.shadow_bits > 0;
+    }
+    const TunnelTest tunnel_test{boxes, ends};
+    const UpdatePass pass{image,   lights,  scene,    change,
+                          tasks,   classes, regions,  uses_tunnels ? &tunnel_test : nullptr,
+                          programs, keeps_trees};
+    PassResult done;
+    done.updates.resize(image.trees.size());
+    done.works.resize(image.trees.size());
+    parallel_for(image.trees.size(), [&](std::size_t tile) { done.works[tile] = find_tile_work(pass, tile); });
+    watch.lap(result.seconds.test);
+    Pool<Shader> shaders;
+    parallel_for(image.trees.size(), [&](std::size_t tile) {
+      done.updates[tile] = update_tile(pass, tile, done.works[tile], shaders);
+    });
+    watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
+    count(done, result);
+    return done;
+  }
+
+  static void count(const PassResult& done, StepResult& result) {
+    Counters& counters = result.counters;
+    result.dependent.resize(done.works.size());
+    result.touched.resize(done.works.size());
+    for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
+      const TileUpdate& update = done.updates[tile];
+      const TileWork& work = done.works[tile];
+      result.dependent[tile] |= work.by_path;
+      for (const LeafTouches& leaf : work.touched) result.touched[tile].set(leaf.leaf);
+      counters.samples_affected += update.shaded.size();
+      counters.ray_tests += update.counters.ray_tests;
+      counters.ray_updates += update.counters.ray_updates;
+      counters.shadow_updates += update.counters.shadow_updates;
+      counters.regions_visited += work.by_groups.visited + work.by_tunnels.visited;
+      counters.regions_culled += work.by_groups.culled + work.by_tunnels.culled;
+    }
+  }
+
+  // ---- keeping what a pass found
+
+  /// Stores new trees and keeps the regions equal to what would be built from them.
+  void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
     if (!change.touches_rays()) return;
-    if (!tracer) tracer = std::make_unique<Tracer>();
-    if (!level_is_current) level = tracer->build(rays);
-    level_is_current = true;
-    build_selection(change, rays, *tracer);
-  }
-
-  [[nodiscard]] PathTask task_of(std::span<const std::uint32_t> path, const StepChange& change) {
-    PathTask task;
-    task.update = change.touches_all_paths();
-    if (!task.update && change.any_respawns) task.update = mentions(path, change);
-    if (!change.colors.empty()) task.shade = depends(path, change.colors);
-    return task;
-  }
-
-  [[nodiscard]] bool mentions(std::span<const std::uint32_t> path, const StepChange& change) const {
-    for (PathCursor cursor(path, lights.size()); !cursor.at_end();) {
-      const PathNode node = cursor.next();
-      if (!node.is_miss() && change.rays.flags(node.object()) != 0) return true;
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool depends(std::span<const std::uint32_t> path, const ColorChange& colors) {
-    const Scene& scene = state.scene();
-    const std::vector<ObjectId> objects = objects_of(path);
-    const auto is_reassigned = [&](ObjectId id) {
-      return std::ranges::find(colors.reassigned, id) != colors.reassigned.end();
-    };
-    if (!colors.reassigned.empty() && std::ranges::any_of(objects, is_reassigned)) return true;
-    const bool is_global = !colors.lights.empty() || colors.ambient || colors.environment;
-    const auto has_changed_material = [&](ObjectId id) { return colors.fields_of(scene.object(id).material) != 0; };
-    return (is_global || std::ranges::any_of(objects, has_changed_material)) && reaches_any_program(path, colors);
-  }
-
-  [[nodiscard]] bool reaches_any_program(std::span<const std::uint32_t> path, const ColorChange& colors) {
-    std::vector<NodeKey> keys;
-    append_keys(rays, path, lights, keys);
-    return std::ranges::any_of(keys,
-                               [&](const NodeKey& key) { return colors.reaches(programs.get(state.scene(), key)); });
-  }
-
-  /// Every object of a path, filters included.
-  [[nodiscard]] std::vector<ObjectId> objects_of(std::span<const std::uint32_t> path) const {
-    std::vector<ObjectId> objects;
-    for (PathCursor cursor(path, lights.size()); !cursor.at_end();) {
-      const PathNode node = cursor.next();
-      if (node.is_miss()) continue;
-      objects.push_back(node.object());
-      for (std::size_t i = 0; i < node.filters.size(); i += 1 + node.filters[i])
-        for (std::uint32_t f = 0; f < node.filters[i]; ++f) objects.emplace_back(node.filters[i + 1 + f]);
-    }
-    return objects;
-  }
-
-  [[nodiscard]] std::vector<PathTask> find_tasks(const StepChange& change) {
-    std::vector<PathTask> tasks(image.paths.size());
-    constexpr std::size_t kGrain = 256;
-    parallel_for(
-        tasks.size(),
-        [&](std::size_t p) { tasks[p] = task_of(image.paths.words(PathId(static_cast<std::uint32_t>(p))), change); },
-        kGrain);
-    return tasks;
-  }
-
-  void update_tile(std::size_t tile, const StepChange& change, const std::vector<PathTask>& tasks,
-                   Pool<Shader>& shaders, TileUpdate& update) {
-    const Frame& frame = image.frame;
-    const TileRect rect = tile_rect(tile, frame.width, frame.height);
-    const TileTrees& trees = image.trees[tile];
-    const GrowScene grow{rays, &level, image.view.max_depth};
-    const PrimaryRays primaries(state.scene().camera, image.view);
-    const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays, programs); });
-    TreeBlock block;
-    std::vector<std::uint32_t> roots, chunk, words;
-    const auto flush = [&] {
-      if (roots.empty()) return;
-      const std::size_t first = update.colors.size();
-      update.shaded.insert(update.shaded.end(), chunk.begin(), chunk.end());
-      update.colors.resize(first + chunk.size());
-      shader->shade(block, roots, std::span(update.colors).subspan(first));
-      block.clear();
-      roots.clear();
-      chunk.clear();
-    };
-    for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
-      const PathTask task = tasks[trees.paths[sample].index()];
-      if (!task.update && !task.shade) continue;
-      const SpawnedRay primary = primaries.ray(rect, sample);
-      const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), lights.size()),
-                              trees.hits_of(sample).data()};
-      const TreeBlock::Mark mark = block.mark();
-      bool changed = false;
-      std::uint32_t root = 0;
-      if (task.update)
-        root = update_tree(grow, change.rays, primary, sample, stored, block, update.counters, changed);
-      else
-        root = expand_tree(grow, primary, sample, stored, block);
-      if (changed || (task.update && change.rays.lights_changed)) pack_sample(block, root, sample, words, update);
-      if (changed || task.shade) {
-        roots.push_back(root);
-        chunk.push_back(sample);
-        if (chunk.size() == kChunkSamples) flush();
-      } else {
-        block.rewind(mark);
-      }
-    }
-    flush();
-  }
-
-  void pack_sample(const TreeBlock& block, std::uint32_t root, std::uint32_t sample, std::vector<std::uint32_t>& words,
-                   TileUpdate& update) const {
-    words.clear();
-    update.packed.push_back(sample);
-    pack(block, root, state.scene().light_order.size(), words, update.hits);
-    update.packed_paths.push_back(update.paths.intern(words));
-    update.first_hit.push_back(static_cast<std::uint32_t>(update.hits.size()));
-  }
-
-  /// Puts the new trees of a tile in place of the old ones; paths are numbered in the order of tiles and samples.
-  void store_trees(TileTrees& trees, const TileUpdate& update) {
-    if (update.packed.empty()) return;
-    std::vector<PathId> ids;
-    for (std::uint32_t i = 0; i < update.paths.size(); ++i)
-      ids.push_back(image.paths.intern(update.paths.words(PathId(i))));
-    TileTrees next;
-    next.paths = trees.paths;
-    next.first_hit.reserve(trees.first_hit.size());
-    next.first_hit.push_back(0);
-    next.hits.reserve(trees.hits.size());
-    std::size_t k = 0;
-    for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
-      std::span<const Hit> hits = trees.hits_of(sample);
-      if (k < update.packed.size() && update.packed[k] == sample) {
-        next.paths[sample] = ids[update.packed_paths[k].index()];
-        hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
-        ++k;
-      }
-      next.hits.insert(next.hits.end(), hits.begin(), hits.end());
-      next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
-    }
-    trees = std::move(next);
-  }
-
-  void store_colors(std::size_t tile, const TileUpdate& update, std::vector<std::uint32_t>& changed_pixels) {
-    Frame& frame = image.frame;
-    const TileRect rect = tile_rect(tile, frame.width, frame.height);
-    std::vector<Rgba>& colors = image.sample_colors[tile];
-    std::uint32_t last_pixel = kNoNode;
-    for (std::size_t k = 0; k < update.shaded.size(); ++k) colors[update.shaded[k]] = update.colors[k];
-    for (std::uint32_t sample : update.shaded) {
-      const std::uint32_t pixel = sample / image.view.samples;
-      if (pixel == last_pixel) continue;
-      last_pixel = pixel;
-      const std::size_t index = frame_index(rect, pixel, frame.width);
-      const Rgba color = pixel_color(&colors[std::size_t{pixel} * image.view.samples], image.view.samples);
-      if (same_bits(color, frame.pixels[index])) continue;
-      frame.pixels[index] = color;
-      changed_pixels.push_back(static_cast<std::uint32_t>(index));
-    }
-  }
-
-  void store(const std::vector<TileUpdate>& updates, const StepChange& change, StepResult& result) {
     // Another light order means another form of every path: all samples have been packed anew.
-    if (change.rays.lights_changed) image.paths = PathTable();
-    for (std::size_t tile = 0; tile < updates.size(); ++tile) {
-      store_trees(image.trees[tile], updates[tile]);
-      store_colors(tile, updates[tile], result.changed_pixels);
+    const bool is_new_table = change.rays.lights_changed;
+    if (is_new_table) {
+      image.paths = PathTable();
+      index.clear();
+      classes.clear();
     }
-    std::ranges::sort(result.changed_pixels);
     lights = state.scene().light_order;
-    if (!change.touches_rays()) return;
+    std::vector<std::vector<PathId>> ids(updates.size());
+    for (std::size_t tile = 0; tile < updates.size(); ++tile)
+      for (std::uint32_t i = 0; i < updates[tile].paths.size(); ++i)
+        ids[tile].push_back(image.paths.intern(updates[tile].paths.words(PathId(i))));
+    index_paths();
+    const GrowScene scene = grow(nullptr);
+    parallel_for(updates.size(), [&](std::size_t tile) {
+      if (updates[tile].packed.empty()) return;
+      store_trees(image.trees[tile], updates[tile], ids[tile]);
+      tile_segments[tile] = 0;
+      for (PathId path : image.trees[tile].paths) tile_segments[tile] += index.segments(path);
+      regions.update(image, scene, tile, leaves_of(tile, updates[tile].packed), class_of());
+    });
+    segments = 0;
+    for (std::uint64_t count : tile_segments) segments += count;
     if (image.paths.size() > 4 * compact_paths + 4096) drop_unused_paths();
-    segments = count_segments();
+  }
+
+  [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
+    const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
+    Leaves leaves;
+    for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image.view.samples, rect.x1 - rect.x0));
+    return leaves;
   }
 
   /// Numbers the paths in use afresh, in the order of tiles and samples.
@@ -292,72 +237,230 @@ struct Replayer::Impl {
       }
     image.paths = std::move(used);
     compact_paths = image.paths.size();
+    index.clear();
+    classes.clear();
+    index_paths();
+    regions.build_groups(image, class_of());
+    if (regions.has_tunnels() && regions.options().tunnels > 1) regions.build_tunnels(image, grow(nullptr), class_of());
+  }
+
+  void keep_colors(const std::vector<TileUpdate>& updates) {
+    for (std::size_t tile = 0; tile < updates.size(); ++tile)
+      for (std::size_t k = 0; k < updates[tile].shaded.size(); ++k)
+        image.sample_colors[tile][updates[tile].shaded[k]] = updates[tile].colors[k];
+  }
+
+  /// Works the pixels of some samples out again and notes those that differ.
+  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples,
+                      std::vector<std::uint32_t>& changed_pixels) {
+    const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
+    const std::vector<Rgba>& stored = image.sample_colors[tile];
+    const Overlay* overlay = overlays.empty() ? nullptr : &overlays[tile];
+    std::vector<Rgba> colors(image.view.samples);
+    std::uint32_t last_pixel = kNoNode;
+    for (std::uint32_t sample : samples) {
+      const std::uint32_t pixel = sample / image.view.samples;
+      if (pixel == last_pixel) continue;
+      last_pixel = pixel;
+      const std::uint32_t first = pixel * image.view.samples;
+      std::copy_n(stored.begin() + first, image.view.samples, colors.begin());
+      if (overlay != nullptr) {
+        auto at = std::ranges::lower_bound(overlay->samples, first) - overlay->samples.begin();
+        for (; at < std::ssize(overlay->samples) && overlay->samples[static_cast<std::size_t>(at)] < first + colors.size(); ++at)
+          colors[overlay->samples[static_cast<std::size_t>(at)] - first] = overlay->colors[static_cast<std::size_t>(at)];
+      }
+      const std::size_t place = frame_index(rect, pixel, image.frame.width);
+      const Rgba color = pixel_color(colors.data(), image.view.samples);
+      if (same_bits(color, image.frame.pixels[place])) continue;
+      image.frame.pixels[place] = color;
+      changed_pixels.push_back(static_cast<std::uint32_t>(place));
+    }
+  }
+
+  // ---- steps
+
+  /// Applies the edit to the scene and finds what it means.
+  StepChange begin(const Edit& edit, std::string_view file, const std::filesystem::path& folder, StepResult& result) {
+    const SceneDelta delta = apply_edit(state, edit, file, folder);
+    result.classification = classify(state.scene(), delta);
+    // Tunnels hold for the scene in which the trees were made; they are built when a change first needs them.
+    StepChange change = find_change(rays, state.scene(), delta, lights);
+    if (change.touches_segments() && !change.rays.lights_changed && !regions.has_tunnels())
+      regions.build_tunnels(image, grow(nullptr), class_of());
+    rays.update(state.scene(), delta);
+    if (regions.options().atoms > 0 && atoms.size() != state.scene().objects.size()) atoms = atoms_of(state, regions.options().atoms);
+    if (level) level->note_changed(selection_of(change));
+    forget_programs(change);
+    result.counters.samples_total = samples_total;
+    return change;
   }
 
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+    require(lifted.empty(), "a drag is released before the next step");
     StepResult result;
     StopWatch watch;
-    const SceneDelta delta = apply_edit(state, edit, file, folder);
-    result.classification = classify(state.scene(), delta);
-    StepChange change = find_change(rays, state.scene(), delta, lights);
-    rays.update(state.scene(), delta);
-    if (change.any_shadows) level_is_current = false;
-    forget_programs(change);
+    StepChange change = begin(edit, file, folder, result);
     watch.lap(result.seconds.classify);
+    update(change, result, watch);
+    return result;
+  }
 
-    Counters& counters = result.counters;
-    for (const TileTrees& tile : image.trees) counters.samples_total += tile.paths.size();
+  /// Brings trees, colours and frame up to date with the scene.
+  void update(StepChange& change, StepResult& result, StopWatch& watch) {
     const std::uint64_t segments_before = segments;
     if (change.touches_rays() || !change.colors.empty()) {
-      const std::vector<PathTask> tasks = find_tasks(change);
-      watch.lap(result.seconds.select);
-      prepare_rays(change);
-      watch.lap(result.seconds.test);
-      std::vector<TileUpdate> updates(image.trees.size());
-      Pool<Shader> shaders;
-      parallel_for(updates.size(), [&](std::size_t tile) { update_tile(tile, change, tasks, shaders, updates[tile]); });
+      const PassResult done = run(change, {}, true, result, watch);
+      keep_trees(done.updates, change);
       watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-      store(updates, change, result);
+      keep_colors(done.updates);
+      for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
+        refresh_pixels(tile, done.updates[tile].shaded, result.changed_pixels);
       watch.lap(result.seconds.evaluate);
-      for (const TileUpdate& update : updates) {
-        counters.samples_affected += update.shaded.size();
-        counters.ray_tests += update.counters.ray_tests;
-        counters.ray_updates += update.counters.ray_updates;
-        counters.shadow_updates += update.counters.shadow_updates;
-      }
     }
+    finish(result, segments_before);
+  }
+
+  static void finish(StepResult& result, std::uint64_t segments_before) {
+    std::ranges::sort(result.changed_pixels);
+    Counters& counters = result.counters;
     counters.color_trees_evaluated = counters.samples_affected;
     counters.pixels_changed = result.changed_pixels.size();
-    counters.ray_tests_culled = segments_before - counters.ray_tests;
+    counters.ray_tests_culled = segments_before - std::min(segments_before, counters.ray_tests);
+  }
+
+  /// The change that puts the lifted objects, where they are now, back into the ray trees.
+  [[nodiscard]] StepChange put_back() const {
+    StepChange change;
+    RayChange& r = change.rays;
+    r.objects.assign(state.scene().objects.size(), 0);
+    r.before_index.assign(state.scene().objects.size(), kNoNode);
+    for (ObjectId id : lifted) r.objects[id.index()] = RayChange::moved | RayChange::shadows;
+    r.old_lights = lights;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) r.old_light_index.push_back(i);
+    change.any_moved = change.any_shadows = !lifted.empty();
+    return change;
+  }
+
+  StepResult drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+    StepResult result;
+    StopWatch watch;
+    StepChange change = begin(edit, file, folder, result);
+    watch.lap(result.seconds.classify);
+    const std::uint64_t segments_before = segments;
+    if (!is_movement(change)) {
+      // Lights move with the selection, say: not the paper's kind of drag. All that is lifted goes back, too.
+      for (ObjectId id : lifted) {
+        change.rays.objects[id.index()] |= RayChange::moved | RayChange::shadows;
+        change.rays.before_index[id.index()] = kNoNode;  // in no tree
+      }
+      change.any_moved = change.any_shadows = change.any_shadows || !lifted.empty();
+      std::vector<Overlay> shown = std::exchange(overlays, {});
+      lifted.clear();
+      update(change, result, watch);
+      for (std::size_t tile = 0; tile < shown.size(); ++tile)
+        refresh_pixels(tile, shown[tile].samples, result.changed_pixels);
+      const auto repeated = sorted_repeats(result.changed_pixels);
+      result.changed_pixels.erase(repeated, result.changed_pixels.end());
+      finish(result, segments_before);
+      return result;
+    }
+    remove_selection(change, result, watch);
+    show_selection(result, watch);
+    finish(result, segments_before);
+    return result;
+  }
+
+  static std::vector<std::uint32_t>::iterator sorted_repeats(std::vector<std::uint32_t>& values) {
+    std::ranges::sort(values);
+    return std::ranges::unique(values).begin();
+  }
+
+  /// Only objects that are elsewhere now, or gone.
+  static bool is_movement(const StepChange& change) {
+    if (!change.colors.empty() || change.rays.lights_changed || change.any_respawns) return false;
+    return std::ranges::all_of(change.rays.objects, [](std::uint8_t flags) {
+      return flags == 0 || flags == (RayChange::moved | RayChange::shadows);
+    });
+  }
+
+  /// First step of a drag (paper 2.2): what moves and is still in the ray trees is taken out of them.
+  void remove_selection(StepChange& change, StepResult& result, StopWatch& watch) {
+    std::vector<ObjectId> all;
+    std::ranges::set_union(lifted, selection_of(change), std::back_inserter(all));
+    if (all.size() == lifted.size()) return;
+    if (overlays.empty()) overlays.resize(image.trees.size());
+    for (ObjectId id : lifted) change.rays.objects[id.index()] = 0;  // not in any tree
+    lifted = std::move(all);
+    const PassResult done = run(change, lifted, true, result, watch);
+    keep_trees(done.updates, change);
+    keep_colors(done.updates);
+    for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
+      refresh_pixels(tile, done.updates[tile].shaded, result.changed_pixels);
+    watch.lap(result.seconds.update);
+  }
+
+  /// Second step: the selection is rendered where it is; the ray trees stay without it.
+  void show_selection(StepResult& result, StopWatch& watch) {
+    StepChange change = put_back();
+    const PassResult done = run(change, {}, false, result, watch);
+    for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
+      const TileUpdate& update = done.updates[tile];
+      std::vector<std::uint32_t> shown = std::exchange(overlays[tile].samples, update.shaded);
+      overlays[tile].colors = update.colors;
+      refresh_pixels(tile, shown, result.changed_pixels);
+      refresh_pixels(tile, update.shaded, result.changed_pixels);
+    }
+    const auto repeated = sorted_repeats(result.changed_pixels);
+    result.changed_pixels.erase(repeated, result.changed_pixels.end());
+    watch.lap(result.seconds.evaluate);
+  }
+
+  /// Last step: the selection goes into the ray trees; the frame stays as it is.
+  StepResult release() {
+    StepResult result;
+    StopWatch watch;
+    result.counters.samples_total = samples_total;
+    if (lifted.empty()) return result;
+    StepChange change = put_back();
+    lifted.clear();
+    overlays.clear();
+    update(change, result, watch);
     return result;
   }
 };
 
-Replayer::Replayer(SceneState state, Image image) : impl_(std::make_unique<Impl>(std::move(state), std::move(image))) {}
+Replayer::Replayer(SceneState state, Image image, const RegionOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(state), std::move(image), options)) {}
 Replayer::~Replayer() = default;
 Replayer::Replayer(Replayer&&) noexcept = default;
 
 const SceneState& Replayer::state() const { return impl_->state; }
 const Image& Replayer::image() const { return impl_->image; }
+const ImageRegions& Replayer::regions() const { return impl_->regions; }
 std::uint64_t Replayer::segments() const { return impl_->segments; }
 
 Resident Replayer::resident() const {
   Resident resident;
-  resident.ray_paths = impl_->image.paths.bytes();
+  resident.ray_paths = impl_->image.paths.bytes() + impl_->index.bytes();
   for (const TileTrees& tile : impl_->image.trees) {
     resident.ray_paths += tile.paths.size() * sizeof(PathId);
     resident.ray_trees += tile.first_hit.size() * sizeof(std::uint32_t) + tile.hits.size() * sizeof(Hit);
   }
+  resident.tunnels = impl_->regions.group_bytes() + impl_->regions.tunnel_bytes();
   // Until colour trees are kept, what is kept of them is their result: a colour a sample.
   for (const std::vector<Rgba>& colors : impl_->image.sample_colors)
     resident.color_trees += colors.size() * sizeof(Rgba);
   const std::uint64_t frame = impl_->image.frame.pixels.size() * sizeof(Rgba);
-  resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + frame;
+  resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + resident.tunnels + frame;
   return resident;
 }
 
 StepResult Replayer::step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
   return impl_->step(edit, file, folder);
 }
+StepResult Replayer::drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+  return impl_->drag(edit, file, folder);
+}
+StepResult Replayer::release() { return impl_->release(); }
 
 }  // namespace relook

@@ -9,6 +9,7 @@
 #include "edit/apply.h"
 #include "engine/counters.h"
 #include "engine/image.h"
+#include "engine/regions.h"
 #include "scene/state.h"
 
 namespace relook {
@@ -18,12 +19,13 @@ struct StepResult {
   Counters counters;
   Seconds seconds;                            // classify .. evaluate; write and total are the caller's
   std::vector<std::uint32_t> changed_pixels;  // indices into frame.pixels, increasing
+  std::vector<Leaves> dependent, touched;     // by tile: leaves whose paths the change reaches, whose tunnels it may touch
 };
 
 class Replayer {
  public:
   /// Takes over a state and the image rendered from it (by preprocess() or from a cache).
-  Replayer(SceneState state, Image image);
+  Replayer(SceneState state, Image image, const RegionOptions& options = {});
   ~Replayer();
   Replayer(Replayer&&) noexcept;
 
@@ -33,8 +35,16 @@ class Replayer {
   /// Number of stored segments: rays and shadow segments of all ray trees.
   [[nodiscard]] std::uint64_t segments() const;
 
-  /// Applies one edit. Throws InputError with everything as before.
+  /// Groups, and tunnels once a step has needed them.
+  [[nodiscard]] const ImageRegions& regions() const;
+
+  /// Applies one edit. Throws InputError with everything as before. Not during a drag.
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder);
+
+  /// One intermediate frame of a drag (paper 2.2). What the edit moves is taken out of the ray trees when it moves
+  /// first, and then only looked for; release() puts it back in where it is. Throws InputError as step() does.
+  StepResult drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder);
+  StepResult release();
 
  private:
   struct Impl;

@@ -94,7 +94,7 @@ Json options_json(const RunReport& report) {
           {"tunnels", structures.tunnels},
           {"groups", structures.groups},
           {"atoms", structures.atoms},
-          {"shadow_bits", structures.shadow_bits},
+          {"shadow_bits", report.view.shadow_bits},
           {"float", report.float_frames},
           {"verify", or_null(report.verify_percent)}};
 }

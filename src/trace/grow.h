@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "trace/path_cursor.h"
+#include "trace/touch.h"
 #include "trace/tracer.h"
 #include "trace/tree_block.h"
 
@@ -22,6 +23,9 @@ struct GrowScene {
   const RayScene& scene;
   const Tracer::TopLevel* level = nullptr;  // the whole scene; null if nothing is traced
   std::uint32_t max_depth = 6;
+  std::uint32_t shadow_bits = 0;  // of shadow counters; more than 0: the level is of a tracer that counts blockers
+
+  [[nodiscard]] PathLayout layout() const { return {scene.scene().light_order.size(), shadow_bits}; }
 };
 
 /// Appends the ray trees of consecutive samples, traced, and the indices of their roots.
@@ -57,10 +61,11 @@ struct RayChange {
   [[nodiscard]] std::uint8_t flags(ObjectId id) const { return objects[id.index()]; }
 };
 
-/// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `changed` is
-/// set to true if any node, hit or shadow state differs from what is stored, or a light that reaches a node has moved.
-std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const SpawnedRay& primary,
-                          std::uint32_t sample, StoredTree stored, TreeBlock& block, GrowCounters& counters,
-                          bool& changed);
+/// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `touches`: the
+/// segments that the selection may meet or may have met; null: any. `changed` is set to true if any node, hit or shadow
+/// state differs from what is stored, or a light that reaches a node has moved.
+std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const Touches* touches,
+                          const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
+                          GrowCounters& counters, bool& changed);
 
 }  // namespace relook

@@ -16,13 +16,49 @@ inline constexpr std::uint32_t kCutShift = 8;
   return static_cast<ShadowState>((light_words[light / 16] >> (2 * (light % 16))) & 3U);
 }
 
+/// Do words follow the states for a light in this state?
+[[nodiscard]] inline bool has_entry(ShadowState state, std::uint32_t shadow_bits) {
+  return state == ShadowState::filtered || (state == ShadowState::blocked && shadow_bits > 0);
+}
+/// Words of the entry of a light with `count` transparent surfaces.
+[[nodiscard]] inline std::size_t entry_size(std::size_t count, ShadowState state) {
+  return 1 + count + (state == ShadowState::blocked ? count + 1 : 0);
+}
+
+/// What a path holds of one light.
+struct LightEntry {
+  std::span<const std::uint32_t> words;     // all of it; empty: has_entry() is false
+  std::span<const std::uint32_t> objects;   // transparent surfaces from the hit towards the light
+  std::span<const std::uint32_t> counters;  // of a blocked light: one an interval
+};
+
+/// Reads the entries of a node, light by light.
+class EntryReader {
+ public:
+  EntryReader(std::span<const std::uint32_t> entries, std::uint32_t shadow_bits)
+      : words_(entries), shadow_bits_(shadow_bits) {}
+
+  /// The entry of the next light, whose state is `state`.
+  LightEntry next(ShadowState state) {
+    if (!has_entry(state, shadow_bits_)) return {};
+    const std::size_t count = words_[0], size = entry_size(count, state);
+    const LightEntry entry{words_.first(size), words_.subspan(1, count), words_.subspan(1 + count, size - 1 - count)};
+    words_ = words_.subspan(size);
+    return entry;
+  }
+
+ private:
+  std::span<const std::uint32_t> words_;
+  std::uint32_t shadow_bits_;
+};
+
 /// One node of a path.
 struct PathNode {
   std::uint32_t object_word = PathTable::kMissWord;
   std::uint32_t flags = 0;
   std::span<const std::uint32_t> lights;   // packed states
-  std::span<const std::uint32_t> filters;  // per filtered light: count, objects
-  std::uint32_t filter_hits = 0;           // objects in `filters`
+  std::span<const std::uint32_t> entries;  // of the lights, for an EntryReader
+  std::uint32_t filter_hits = 0;           // transparent surfaces of all filtered lights
 
   [[nodiscard]] bool is_miss() const { return object_word == PathTable::kMissWord; }
   [[nodiscard]] ObjectId object() const { return ObjectId(object_word); }
@@ -33,10 +69,12 @@ struct PathNode {
 
 class PathCursor {
  public:
-  PathCursor(std::span<const std::uint32_t> words, std::size_t lights)
-      : words_(words), light_count_(lights), light_words_((lights + 15) / 16) {}
+  PathCursor(std::span<const std::uint32_t> words, const PathLayout& layout)
+      : words_(words), layout_(layout), light_words_((layout.lights + 15) / 16) {}
 
   [[nodiscard]] bool at_end() const { return position_ == words_.size(); }
+  /// Where the next node starts.
+  [[nodiscard]] std::size_t position() const { return position_; }
 
   PathNode next() {
     PathNode node;
@@ -46,20 +84,22 @@ class PathCursor {
     node.lights = words_.subspan(position_, light_words_);
     position_ += light_words_;
     const std::size_t start = position_;
-    for (std::size_t light = 0; light < light_count_; ++light) {
-      if (shadow_state(node.lights, light) != ShadowState::filtered) continue;
+    for (std::size_t light = 0; light < layout_.lights; ++light) {
+      const ShadowState state = shadow_state(node.lights, light);
+      if (!has_entry(state, layout_.shadow_bits)) continue;
       const std::uint32_t count = words_[position_];
-      node.filter_hits += count;
-      position_ += 1 + count;
+      if (state == ShadowState::filtered) node.filter_hits += count;
+      position_ += entry_size(count, state);
     }
-    node.filters = words_.subspan(start, position_ - start);
+    node.entries = words_.subspan(start, position_ - start);
     return node;
   }
 
  private:
   std::span<const std::uint32_t> words_;
   std::size_t position_ = 0;
-  std::size_t light_count_, light_words_;
+  PathLayout layout_;
+  std::size_t light_words_;
 };
 
 }  // namespace relook

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "trace/path_cursor.h"
+#include "trace/shadow_counter.h"
 
 namespace relook {
 
@@ -37,19 +38,41 @@ PathTable PathTable::from_columns(std::vector<std::uint32_t> words, std::vector<
 
 std::uint64_t PathTable::hash_of(std::span<const std::uint32_t> path) const { return hash64(std::as_bytes(path)); }
 
-std::size_t hit_count(std::span<const std::uint32_t> words, std::size_t lights) {
+std::size_t hit_count(std::span<const std::uint32_t> words, const PathLayout& layout) {
   std::size_t hits = 0;
-  for (PathCursor cursor(words, lights); !cursor.at_end();) {
+  for (PathCursor cursor(words, layout); !cursor.at_end();) {
     const PathNode node = cursor.next();
     if (!node.is_miss()) hits += 1 + node.filter_hits;
   }
   return hits;
 }
 
+namespace {
+
+/// What is malformed about the entry that `words` starts with, "" if nothing; `size`: its length.
+std::string broken_entry(std::span<const std::uint32_t> words, ShadowState state, std::size_t objects,
+                         std::uint32_t shadow_bits, std::size_t& size) {
+  if (words.empty()) return "the count of a light's surfaces is missing";
+  const std::size_t count = words[0];
+  const bool is_blocked = state == ShadowState::blocked;
+  size = entry_size(words[0], state);
+  if ((count == 0 && !is_blocked) || words.size() < size) return "a light's list of surfaces is empty or cut short";
+  for (const std::uint32_t object : words.subspan(1, count))
+    if (object >= objects) return "object index of a transparent surface out of range";
+  bool counts_any = false;
+  for (const std::uint32_t counter : words.subspan(1 + count, size - 1 - count)) {
+    if (!ShadowCounter::is_sound(counter, shadow_bits)) return "a shadow counter has too many bits";
+    counts_any = counts_any || counter != 0;
+  }
+  return is_blocked && !counts_any ? "a blocked light has no blocker" : "";
+}
+
+}  // namespace
+
 std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words, std::size_t objects,
-                                           std::size_t lights) {
+                                           const PathLayout& layout) {
   std::vector<std::string> broken;
-  const std::size_t light_words = (lights + 15) / 16;
+  const std::size_t light_words = (layout.lights + 15) / 16;
   std::size_t i = 0;
   std::size_t expected = 1;  // nodes still owed: the root, then the children announced
   const auto left = [&](std::size_t count) { return words.size() - i >= count; };
@@ -65,13 +88,13 @@ std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words,
     expected += static_cast<std::size_t>(std::popcount(flags & 0xFU));
     const std::size_t states = i;
     i += light_words;
-    for (std::size_t light = 0; light < lights && broken.empty(); ++light) {
-      if (shadow_state(words.subspan(states), light) != ShadowState::filtered) continue;
-      if (!left(1)) return {"a filter count is missing"};
-      const std::uint32_t count = words[i++];
-      if (count == 0 || !left(count)) return {"a filter list is empty or cut short"};
-      for (std::uint32_t f = 0; f < count; ++f)
-        if (words[i++] >= objects) broken.push_back("filter object index out of range");
+    for (std::size_t light = 0; light < layout.lights; ++light) {
+      const ShadowState state = shadow_state(words.subspan(states), light);
+      if (!has_entry(state, layout.shadow_bits)) continue;
+      std::size_t size = 0;
+      std::string broken_list = broken_entry(words.subspan(i), state, objects, layout.shadow_bits, size);
+      if (!broken_list.empty()) return {std::move(broken_list)};
+      i += size;
     }
   }
   if (broken.empty() && i != words.size()) broken.push_back("words after the last node");

@@ -15,7 +15,7 @@ namespace relook {
 enum class Branch : std::uint8_t { reflection = 0, coat = 1, refraction = 2, transparency = 3, primary = 4 };
 inline constexpr std::size_t kBranches = 4;  // those that a hit can spawn
 
-/// What stands between a hit and one light. b = 0 of the paper's shadow counters (4.2): one flag for opaque blockers.
+/// What stands between a hit and one light. How many opaque blockers is counted apart: see shadow_counter.h.
 enum class ShadowState : std::uint8_t {
   facing_away = 0,  // the light is below the geometric surface: no segment
   open = 1,         // nothing in between
@@ -23,12 +23,23 @@ enum class ShadowState : std::uint8_t {
   blocked = 3,      // at least one opaque blocker
 };
 
+/// What the form of a path depends on, the same for all paths of an image.
+struct PathLayout {
+  std::size_t lights = 0;         // living lights of the scene
+  std::uint32_t shadow_bits = 0;  // of a shadow counter; 0: none are kept, `blocked` says it all
+};
+
 /// Interned paths. A path is a sequence of words, nodes in preorder, children in the order of Branch:
 ///   node     object index (kMissWord: the ray left the scene)
 ///            branch mask of spawned rays (bits 0..3) | inside flag (bit 4) | Fresnel-cut mask (bits 8..11)   [hits
 ///            only]
 ///   lights   two bits per living light in the scene's light order, packed 16 to a word                      [hits
-///   only] filters  for every `filtered` light, in order: count, then that many object indices [hits only]
+///            only]
+///   entries  in light order [hits only]:
+///            for every `filtered` light: count, then that many object indices
+///            for every `blocked` light if shadows are counted: count k of transparent surfaces on the segment, their k
+///            object indices from the hit towards the light, and k + 1 shadow counters (one a word): distinct opaque
+///            objects of each interval between them. No hits are stored for these.
 /// Invariant: ids are dense, in order of first insertion; equal sequences have equal ids.
 class PathTable {
  public:
@@ -56,9 +67,9 @@ class PathTable {
 };
 
 /// Number of hits (nodes and filters) that a ray tree with this path stores; and sentences about what is malformed for
-/// `objects` objects and `lights` lights (empty: sound). A sound path can be walked without further checks.
-[[nodiscard]] std::size_t hit_count(std::span<const std::uint32_t> words, std::size_t lights);
+/// `objects` objects (empty: sound). A sound path can be walked without further checks.
+[[nodiscard]] std::size_t hit_count(std::span<const std::uint32_t> words, const PathLayout& layout);
 [[nodiscard]] std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words, std::size_t objects,
-                                                         std::size_t lights);
+                                                         const PathLayout& layout);
 
 }  // namespace relook

@@ -9,7 +9,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -18,12 +20,22 @@
 namespace relook {
 
 struct Tracer::TopLevel::Impl {
-  RTCScene scene = nullptr;
-  std::vector<Placed> placed;                       // by instance id
-  std::vector<std::shared_ptr<const Mesh>> meshes;  // keeps what the bottom levels point into
-  ~Impl() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-  }
+  struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  };
+  /// Objects under one Embree scene.
+  struct Layer {
+    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;  // null: no objects
+    std::vector<Placed> placed;                       // by instance id; object null: hidden
+    std::vector<std::shared_ptr<const Mesh>> meshes;  // keeps what the bottom levels point into
+  };
+  Layer base, overlay;
+  std::vector<std::uint32_t> by_id;                                // instances of the base, sorted by object
+  std::vector<std::pair<std::uint32_t, const RayObject*>> hidden;  // instances of the base, and what stood there
+  bool counts_blockers = false;
+
+  [[nodiscard]] bool meets_base() const { return hidden.size() < base.placed.size(); }
+  [[nodiscard]] bool meets_overlay() const { return !overlay.placed.empty(); }
 };
 
 namespace {
@@ -38,9 +50,10 @@ struct Query
     : RTCIntersectContext {
 #endif
   const std::vector<Tracer::Placed>* placed = nullptr;
-  const Ray* ray = nullptr;                    // intersect(): unit direction
+  const Ray* ray = nullptr;
   Meeting nearest;                             // intersect()
-  std::vector<Crossing>* crossings = nullptr;  // passes()
+  std::vector<Crossing>* crossings = nullptr;  // passes(), blockers()
+  bool opaque_too = false;                     // blockers()
 };
 
 void start(Query& query, const std::vector<Tracer::Placed>& placed) {
@@ -63,6 +76,10 @@ float reach(float t, const Ray& ray) {
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Tracer::Placed& placed = (*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)];
+  if (placed.object == nullptr) {
+    args->valid[0] = 0;
+    return;
+  }
   Meeting candidate;
   candidate.object = placed.id;
   candidate.hit = {RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)};
@@ -82,14 +99,19 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Tracer::Placed& placed = (*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)];
   const Hit hit{RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)};
-  const SurfaceOptics& optics = placed.object->optics;
-  if (optics.cut_out && !is_covered(*placed.object, hit)) {
+  if (placed.object == nullptr || (placed.object->optics.cut_out && !is_covered(*placed.object, hit))) {
     args->valid[0] = 0;
     return;
   }
-  if (!optics.passes_light) return;  // opaque here: the segment ends
+  if (!placed.object->optics.passes_light && !query.opaque_too) return;  // the segment ends here
   query.crossings->push_back({placed.id, hit, RTCRayN_tfar(args->ray, 1, 0), placed.object->key});
   args->valid[0] = 0;
+}
+
+/// For objects without collect_crossings(). Asked after it at the others.
+void reject_hidden(const RTCFilterFunctionNArguments* args) {
+  const auto& query = *reinterpret_cast<const Query*>(args->context);
+  if ((*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)].object == nullptr) args->valid[0] = 0;
 }
 
 bool is_traceable(const Ray& ray) {
@@ -115,18 +137,69 @@ void set_ray(RTCRay& r, const Ray& ray) {
   r.flags = 0;
 }
 
+/// Looks for what is nearer than query.nearest.
+void look_for_nearest(RTCScene scene, const std::vector<Tracer::Placed>& placed, Query& query) {
+  start(query, placed);
+  RTCRayHit ray_hit;
+  set_ray(ray_hit.ray, *query.ray);
+  ray_hit.ray.tfar = reach(query.nearest.t, *query.ray);
+  ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+#if RTC_VERSION_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &query;
+  rtcIntersect1(scene, &ray_hit, &arguments);
+#else
+  rtcIntersect1(scene, &query, &ray_hit);
+#endif
+}
+
+/// Appends the crossings. `any_hidden`: objects of `placed` are.
+bool is_blocked(RTCScene scene, const std::vector<Tracer::Placed>& placed, bool any_hidden, Query& query) {
+  start(query, placed);
+  RTCRay shadow_ray;
+  set_ray(shadow_ray, *query.ray);
+#if RTC_VERSION_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.context = &query;
+  if (any_hidden) {
+    arguments.filter = reject_hidden;
+    arguments.flags = RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+  }
+  rtcOccluded1(scene, &shadow_ray, &arguments);
+#else
+  if (any_hidden) query.filter = reject_hidden;
+  rtcOccluded1(scene, &query, &shadow_ray);
+#endif
+  return shadow_ray.tfar < 0;  // Embree's sign of an occluded ray
+}
+
+/// Embree may report a surface more than once, and in any order.
+void put_in_order(std::vector<Crossing>& crossings) {
+  if (crossings.size() < 2) return;
+  const auto place = [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); };
+  std::sort(crossings.begin(), crossings.end(),
+            [&](const Crossing& a, const Crossing& b) { return place(a) < place(b); });
+  const auto same = [&](const Crossing& a, const Crossing& b) { return place(a) == place(b); };
+  crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
+}
+
 }  // namespace
 
 struct Tracer::Impl {
+  using Layer = TopLevel::Impl::Layer;
   RTCDevice device = nullptr;
+  bool count_blockers;
   struct BottomLevel {
     std::weak_ptr<const Mesh> mesh;  // expired: the address may belong to another mesh by now
     RTCScene scene = nullptr;
   };
-  std::map<std::pair<const Mesh*, bool>, BottomLevel> bottom_levels;  // by mesh and whether light may pass
+  std::map<std::pair<const Mesh*, bool>, BottomLevel> bottom_levels;  // by mesh and whether it reports crossings
 
   // At most AVX2: hosts that share a cache must agree in every bit, so they must run the same code.
-  Impl() : device(rtcNewDevice("max_isa=avx2")) {
+  explicit Impl(bool counts) : device(rtcNewDevice("max_isa=avx2")), count_blockers(counts) {
     if (device == nullptr) throw std::bad_alloc();
   }
   ~Impl() {
@@ -151,14 +224,23 @@ struct Tracer::Impl {
     });
   }
 
-  /// `may_pass_light`: shadow segments ask collect_crossings() at each hit; otherwise the first hit blocks them.
-  RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh, bool may_pass_light) {
-    BottomLevel& level = bottom_levels[{mesh.get(), may_pass_light}];
+  RTCScene new_scene() const {
+    RTCScene scene = rtcNewScene(device);
+#if RTC_VERSION_MAJOR >= 4
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
+#else
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+#endif
+    return scene;
+  }
+
+  /// `reports_crossings`: shadow segments ask collect_crossings() at each hit; otherwise the first hit blocks them.
+  RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh, bool reports_crossings) {
+    BottomLevel& level = bottom_levels[{mesh.get(), reports_crossings}];
     if (level.scene != nullptr && level.mesh.lock() == mesh) return level.scene;
     if (level.scene != nullptr) rtcReleaseScene(level.scene);
     level.mesh = mesh;
-    level.scene = rtcNewScene(device);
-    rtcSetSceneFlags(level.scene, RTC_SCENE_FLAG_ROBUST);
+    level.scene = new_scene();
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     // Embree reads 16 bytes at the last vertex, so it gets a copy of its own.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -169,12 +251,47 @@ struct Tracer::Impl {
     for (const Point& p : mesh->positions) positions = std::copy_n(&p.x, 3, positions);
     for (const auto& t : mesh->triangles) triangles = std::copy_n(t.data(), 3, triangles);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
-    if (may_pass_light) rtcSetGeometryOccludedFilterFunction(geometry, collect_crossings);
+    if (reports_crossings) rtcSetGeometryOccludedFilterFunction(geometry, collect_crossings);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(level.scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(level.scene);
     return level.scene;
+  }
+
+  RTCGeometry new_instance(const RayObject& object) {
+    const bool reports_crossings = object.optics.passes_light || object.optics.cut_out || count_blockers;
+    RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(instance, bottom_level(object.mesh, reports_crossings));
+    float columns[12];  // 3x4, column by column: Imath's rows are Embree's columns
+    for (int column = 0; column < 4; ++column)
+      std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);
+    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
+    rtcCommitGeometry(instance);
+    return instance;
+  }
+
+  Layer build(std::span<const Placed> objects) {
+    drop_unused();
+    Layer layer;
+    for (const Placed& placed : objects)
+      if (placed.object->alive && !placed.object->mesh->triangles.empty()) layer.placed.push_back(placed);
+    if (layer.placed.empty()) return layer;
+    // An object alone would be the root of its top level and be met without the test of its box that it gets among
+    // others; boxes of instances are rounded, so at silhouettes the two could disagree. Twice the same object makes it
+    // a child.
+    if (layer.placed.size() == 1) layer.placed.push_back(layer.placed.front());
+    layer.scene.reset(new_scene());
+    for (std::size_t i = 0; i < layer.placed.size(); ++i) {
+      const RayObject& object = *layer.placed[i].object;
+      RTCGeometry instance = new_instance(object);
+      rtcAttachGeometryByID(layer.scene.get(), instance, static_cast<unsigned>(i));
+      rtcReleaseGeometry(instance);
+      layer.meshes.push_back(object.mesh);
+    }
+    rtcCommitScene(layer.scene.get());
+    check();
+    return layer;
   }
 };
 
@@ -182,39 +299,20 @@ Tracer::TopLevel::TopLevel() = default;
 Tracer::TopLevel::~TopLevel() = default;
 Tracer::TopLevel::TopLevel(TopLevel&&) noexcept = default;
 Tracer::TopLevel& Tracer::TopLevel::operator=(TopLevel&&) noexcept = default;
-bool Tracer::TopLevel::empty() const { return !impl_ || impl_->placed.empty(); }
+bool Tracer::TopLevel::empty() const { return !impl_ || (!impl_->meets_base() && !impl_->meets_overlay()); }
 
-Tracer::Tracer() : impl_(std::make_unique<Impl>()) {}
+Tracer::Tracer(bool count_blockers) : impl_(std::make_unique<Impl>(count_blockers)) {}
 Tracer::~Tracer() = default;
 
 Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {
-  impl_->drop_unused();
   TopLevel level;
   level.impl_ = std::make_unique<TopLevel::Impl>();
   TopLevel::Impl& top = *level.impl_;
-  top.scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(top.scene, RTC_SCENE_FLAG_ROBUST);
-  for (const Placed& placed : objects)
-    if (placed.object->alive && !placed.object->mesh->triangles.empty()) top.placed.push_back(placed);
-  // An object alone would be the root of its top level and be met without the test of its box that it gets among
-  // others; boxes of instances are rounded, so at silhouettes the two could disagree. Twice the same object makes it a
-  // child.
-  if (top.placed.size() == 1) top.placed.push_back(top.placed.front());
-  for (std::size_t i = 0; i < top.placed.size(); ++i) {
-    const RayObject& object = *top.placed[i].object;
-    RTCGeometry instance = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, impl_->bottom_level(object.mesh, object.optics.passes_light || object.optics.cut_out));
-    float columns[12];  // 3x4, column by column: Imath's rows are Embree's columns
-    for (int column = 0; column < 4; ++column)
-      std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);
-    rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
-    rtcCommitGeometry(instance);
-    rtcAttachGeometryByID(top.scene, instance, static_cast<unsigned>(i));
-    rtcReleaseGeometry(instance);
-    top.meshes.push_back(object.mesh);
-  }
-  rtcCommitScene(top.scene);
-  impl_->check();
+  top.base = impl_->build(objects);
+  top.by_id.resize(top.base.placed.size());
+  std::iota(top.by_id.begin(), top.by_id.end(), 0U);
+  std::ranges::sort(top.by_id, {}, [&](std::uint32_t instance) { return top.base.placed[instance].id; });
+  top.counts_blockers = impl_->count_blockers;
   return level;
 }
 
@@ -225,25 +323,30 @@ Tracer::TopLevel Tracer::build(const RayScene& scene) {
   return build(all);
 }
 
+void Tracer::replace(TopLevel& level, std::span<const ObjectId> hidden, std::span<const Placed> added) {
+  if (!level.impl_) level = build(std::span<const Placed>());
+  TopLevel::Impl& top = *level.impl_;
+  std::vector<Placed>& placed = top.base.placed;
+  for (const auto& [instance, object] : top.hidden) placed[instance].object = object;
+  top.hidden.clear();
+  for (const ObjectId id : hidden) {
+    const auto id_of = [&](std::uint32_t instance) { return placed[instance].id; };
+    for (const std::uint32_t instance : std::ranges::equal_range(top.by_id, id, {}, id_of))
+      if (placed[instance].object != nullptr)
+        top.hidden.emplace_back(instance, std::exchange(placed[instance].object, nullptr));
+  }
+  top.overlay = impl_->build(added);
+}
+
 Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
   if (level.empty() || !is_traceable(ray)) return {};
+  const TopLevel::Impl& top = *level.impl_;
   Query query;
-  start(query, level.impl_->placed);
   query.ray = &ray;
   query.nearest.t = ray.t_max;
   query.nearest.key = ~std::uint64_t{0};
-  RTCRayHit ray_hit;
-  set_ray(ray_hit.ray, ray);
-  ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.context = &query;
-  rtcIntersect1(level.impl_->scene, &ray_hit, &arguments);
-#else
-  rtcIntersect1(level.impl_->scene, &query, &ray_hit);
-#endif
+  if (top.meets_base()) look_for_nearest(top.base.scene.get(), top.base.placed, query);
+  if (top.meets_overlay()) look_for_nearest(top.overlay.scene.get(), top.overlay.placed, query);
   if (query.nearest.object.is_none()) query.nearest.t = std::numeric_limits<float>::infinity();
   return query.nearest;
 }
@@ -251,27 +354,29 @@ Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
 bool Tracer::passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings) {
   crossings.clear();
   if (level.empty() || !is_traceable(ray)) return true;
+  const TopLevel::Impl& top = *level.impl_;
   Query query;
-  start(query, level.impl_->placed);
+  query.ray = &ray;
   query.crossings = &crossings;
-  RTCRay shadow_ray;
-  set_ray(shadow_ray, ray);
-#if RTC_VERSION_MAJOR >= 4
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.context = &query;
-  rtcOccluded1(level.impl_->scene, &shadow_ray, &arguments);
-#else
-  rtcOccluded1(level.impl_->scene, &query, &shadow_ray);
-#endif
-  if (shadow_ray.tfar < 0) return false;  // Embree's sign of an occluded ray
-  if (crossings.size() < 2) return true;
-  const auto place = [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); };
-  std::sort(crossings.begin(), crossings.end(),
-            [&](const Crossing& a, const Crossing& b) { return place(a) < place(b); });
-  const auto same = [&](const Crossing& a, const Crossing& b) { return place(a) == place(b); };
-  crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
+  const bool any_hidden = !top.hidden.empty();
+  if (top.meets_base() && is_blocked(top.base.scene.get(), top.base.placed, any_hidden, query)) return false;
+  if (top.meets_overlay() && is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query)) return false;
+  put_in_order(crossings);
   return true;
+}
+
+void Tracer::blockers(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings) {
+  crossings.clear();
+  if (level.empty() || !is_traceable(ray)) return;
+  const TopLevel::Impl& top = *level.impl_;
+  require(top.counts_blockers, "blockers are asked of a level that counts them");
+  Query query;
+  query.ray = &ray;
+  query.crossings = &crossings;
+  query.opaque_too = true;
+  if (top.meets_base()) is_blocked(top.base.scene.get(), top.base.placed, false, query);
+  if (top.meets_overlay()) is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query);
+  put_in_order(crossings);
 }
 
 }  // namespace relook

@@ -1,7 +1,8 @@
 // Rays against triangles. The only interface to Embree: one bottom level per mesh, one instance per object, top levels
-// for the whole scene and for selections over the same bottom levels. Results depend on the ray and the objects alone:
-// never on build order, thread count, or on what else is in the top level. Coincident hits are ordered by (t, object
-// key, primitive).
+// for the whole scene and for selections over the same bottom levels. After edits a top level is layered: its base
+// without what changed since, and a small overlay. Results depend on the ray and the objects alone: never on build
+// order, layers, thread count, or on what else is in the top level. Coincident hits are ordered by (t, object key,
+// primitive).
 #pragma once
 #include <memory>
 #include <span>
@@ -31,12 +32,13 @@ struct Meeting {
   }
 };
 
-/// A transparent surface that a shadow segment crosses.
+/// A surface that a shadow segment crosses.
 struct Crossing {
   ObjectId object;
   Hit hit;
   float t = 0;
   std::uint64_t key = 0;
+  bool operator==(const Crossing&) const = default;
 };
 
 class Tracer {
@@ -60,14 +62,22 @@ class Tracer {
     const RayObject* object;  // outlives the top level
   };
 
-  Tracer();
+  /// `count_blockers`: its top levels may be asked for blockers(); passes() is slower then.
+  explicit Tracer(bool count_blockers = false);
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
 
-  /// Objects that are not alive are left out. A change of what an object's optics let through needs a new top level. Bottom levels are made once per mesh and kept while an object uses them.
+  /// Objects that are not alive are left out. A change of an object's geometry or of what its optics let through needs
+  /// a new top level, or replace(). Bottom levels are made once per mesh and kept while an object uses them.
   [[nodiscard]] TopLevel build(std::span<const Placed> objects);
   [[nodiscard]] TopLevel build(const RayScene& scene);
+
+  /// Makes `level` stand for its base, the objects it was built over, without `hidden`, plus `added`: only the small
+  /// top level over `added` is built. Not cumulative: each call replaces what earlier calls hid and added. Results
+  /// equal those of a top level built afresh, bit for bit. Requires: every object of the base that is not as it was
+  /// when the base was built is hidden; `level` is of this tracer. Ids in `hidden` that the base lacks are ignored.
+  void replace(TopLevel& level, std::span<const ObjectId> hidden, std::span<const Placed> added);
 
   /// Rays with a component that is not finite, or larger than 1e18, meet nothing.
   [[nodiscard]] static Meeting intersect(const TopLevel& level, const Ray& ray);
@@ -75,6 +85,10 @@ class Tracer {
   /// False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent surfaces in
   /// order. `crossings` is cleared first.
   [[nodiscard]] static bool passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings);
+
+  /// All surfaces that the segment crosses, opaque ones too, in order. `crossings` is cleared first. Requires: a level
+  /// of a tracer made with `count_blockers`.
+  static void blockers(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings);
 
  private:
   struct Impl;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "trace/path_cursor.h"
+
 namespace relook {
 namespace {
 
@@ -115,6 +117,14 @@ void complete(RayNode& node, const RayObject& object) {
   node.footprint = width / std::fmax(-node.ray.direction.dot(node.point.geometric), 0.05F);
 }
 
+float distance_slack(const RayNode& node, const RayObject& object) {
+  constexpr float kUlps = 0x1p-17F;  // 128 units in the last place
+  const Point& o = node.ray.origin;
+  const float coordinates = std::fabs(o.x) + std::fabs(o.y) + std::fabs(o.z);
+  const float cosine = std::fmax(-node.ray.direction.dot(node.point.geometric), 1e-4F);
+  return (kUlps * (node.length + coordinates) + 8 * node.point.offset) * object.condition / cosine;
+}
+
 ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light) {
   ShadowSegment segment;
   const bool directional = light.kind == LightKind::directional;
@@ -147,7 +157,12 @@ void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSe
   }
 }
 
-void pack(const TreeBlock& block, std::uint32_t root, std::size_t lights, std::vector<std::uint32_t>& words,
+std::span<const std::uint32_t> TreeBlock::blocker_entry(const LightLink& link) const {
+  const std::uint32_t* entry = blocker_words.data() + link.first_blocker_word;
+  return {entry, entry_size(entry[0], ShadowState::blocked)};
+}
+
+void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, std::vector<std::uint32_t>& words,
           std::vector<Hit>& hits) {
   const std::uint32_t sample = block.nodes[root].sample;
   for (std::size_t i = root; i < block.nodes.size() && block.nodes[i].sample == sample; ++i) {
@@ -164,11 +179,16 @@ void pack(const TreeBlock& block, std::uint32_t root, std::size_t lights, std::v
     words.push_back(flags);
     hits.push_back(node.hit);
     const std::size_t states = words.size();
-    words.resize(states + (lights + 15) / 16);
-    for (std::size_t light = 0; light < lights; ++light) {
+    words.resize(states + (layout.lights + 15) / 16);
+    for (std::size_t light = 0; light < layout.lights; ++light) {
       const LightLink& link = block.lights[node.first_light + light];
       words[states + light / 16] |= static_cast<std::uint32_t>(link.state) << (2 * (light % 16));
-      if (link.state != ShadowState::filtered) continue;
+      if (!has_entry(link.state, layout.shadow_bits)) continue;
+      if (link.state == ShadowState::blocked) {
+        const auto entry = block.blocker_entry(link);
+        words.insert(words.end(), entry.begin(), entry.end());
+        continue;
+      }
       words.push_back(link.filters);
       for (std::uint32_t f = 0; f < link.filters; ++f) {
         const FilterNode& filter = block.filters[link.first_filter + f];

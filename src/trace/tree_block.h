@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "trace/ray_path.h"
@@ -42,10 +43,11 @@ struct RayNode {
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
 };
 
-/// What stands between a node and one light. filters: a range of TreeBlock::filters.
+/// What stands between a node and one light.
 struct LightLink {
   ShadowState state = ShadowState::facing_away;
-  std::uint32_t first_filter = 0, filters = 0;
+  std::uint32_t first_filter = 0, filters = 0;  // filtered: a range of TreeBlock::filters
+  std::uint32_t first_blocker_word = 0;         // blocked and counted: its entry in TreeBlock::blocker_words
 };
 
 /// A transparent surface on a shadow segment.
@@ -61,16 +63,21 @@ struct TreeBlock {
   std::vector<RayNode> nodes;
   std::vector<LightLink> lights;
   std::vector<FilterNode> filters;
+  std::vector<std::uint32_t> blocker_words;  // entries of blocked lights, as in paths
+
+  /// The entry of a blocked light. Requires: shadows are counted.
+  [[nodiscard]] std::span<const std::uint32_t> blocker_entry(const LightLink& link) const;
 
   /// A state to go back to: what was appended since is dropped.
   struct Mark {
-    std::size_t nodes = 0, lights = 0, filters = 0;
+    std::size_t nodes = 0, lights = 0, filters = 0, blocker_words = 0;
   };
-  [[nodiscard]] Mark mark() const { return {nodes.size(), lights.size(), filters.size()}; }
+  [[nodiscard]] Mark mark() const { return {nodes.size(), lights.size(), filters.size(), blocker_words.size()}; }
   void rewind(const Mark& mark) {
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(mark.nodes), nodes.end());
     lights.resize(mark.lights);
     filters.resize(mark.filters);
+    blocker_words.resize(mark.blocker_words);
   }
   void clear() { rewind({}); }
 };
@@ -86,6 +93,10 @@ struct Spawned {
 
 /// Fills length, footprint and point of a node whose ray, object and hit are set.
 void complete(RayNode& node, const RayObject& object);
+
+/// A hit's distance is known up to rounding, the more so the flatter the ray meets its triangle: the half width of the
+/// band, in metres along the ray, within which only the whole scene decides what is nearer.
+[[nodiscard]] float distance_slack(const RayNode& node, const RayObject& object);
 
 /// The shadow segment from a point to a light: t runs to 1 at a point or spot light.
 struct ShadowSegment {
@@ -105,7 +116,7 @@ void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSe
                       std::size_t count);
 
 /// The path words of the sample whose nodes start at `root`, appended to `words`; its hits appended to `hits`.
-void pack(const TreeBlock& block, std::uint32_t root, std::size_t lights, std::vector<std::uint32_t>& words,
+void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, std::vector<std::uint32_t>& words,
           std::vector<Hit>& hits);
 
 }  // namespace relook

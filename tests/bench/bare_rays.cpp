@@ -25,13 +25,13 @@ struct TileRays {
 TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile) {
   const Scene& scene = ray_scene.scene();
   const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-  const GrowScene grow{ray_scene, nullptr, image.view.max_depth};
+  const GrowScene grow{ray_scene, nullptr, image.view.max_depth, image.view.shadow_bits};
   const PrimaryRays primaries(scene.camera, image.view);
   TileRays result;
   TreeBlock block;
   for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
     const TileTrees& trees = image.trees[tile];
-    const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), scene.light_order.size()),
+    const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), grow.layout()),
                             trees.hits_of(sample).data()};
     block.clear();
     expand_tree(grow, primaries.ray(rect, sample), sample, stored, block);

@@ -1,0 +1,98 @@
+#include "engine/regions.h"
+
+#include "base/parallel.h"
+#include "engine/sampling.h"
+
+namespace relook {
+namespace {
+
+/// Encloses the ray trees of a tile's leaves, expanded from their stored form.
+class LeafTunnels {
+ public:
+  LeafTunnels(const Image& image, const GrowScene& grow, std::size_t tile, std::size_t most, const ClassOf& class_of)
+      : image_(image),
+        grow_(grow),
+        trees_(image.trees[tile]),
+        rect_(tile_rect(tile, image.frame.width, image.frame.height)),
+        primaries_(grow.scene.scene().camera, image.view),
+        class_of_(class_of),
+        set_(most) {}
+
+  std::span<const Tunnel> of(std::uint32_t leaf) {
+    set_.clear();
+    const RegionSquare square = square_of(leaf);
+    const std::uint32_t width = rect_.x1 - rect_.x0, samples = image_.view.samples;
+    for (std::uint32_t y = square.y; y < std::min(square.y + square.size, rect_.y1 - rect_.y0); ++y)
+      for (std::uint32_t x = square.x; x < std::min(square.x + square.size, width); ++x)
+        for (std::uint32_t k = 0; k < samples; ++k) add((y * width + x) * samples + k);
+    return set_.tunnels();
+  }
+
+ private:
+  void add(std::uint32_t sample) {
+    const PathId path = trees_.paths[sample];
+    block_.clear();
+    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()),
+                            trees_.hits_of(sample).data()};
+    const std::uint32_t root = expand_tree(grow_, primaries_.ray(rect_, sample), sample, stored, block_);
+    enclose(set_.of(class_of_(path)), grow_.scene, block_, root, histories_);
+  }
+
+  const Image& image_;
+  const GrowScene& grow_;
+  const TileTrees& trees_;
+  TileRect rect_;
+  PrimaryRays primaries_;
+  const ClassOf& class_of_;
+  TunnelSet set_;
+  TreeBlock block_;
+  std::vector<History> histories_;
+};
+
+Leaves all_leaves() { return Leaves().set(); }
+
+}  // namespace
+
+PathGroups ImageRegions::groups_of(const Image& image, std::size_t tile,
+                                   const ClassOf& class_of) const {
+  const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
+  return {image.trees[tile], rect.x1 - rect.x0, image.view.samples, options_.groups, class_of};
+}
+
+void ImageRegions::build_groups(const Image& image, const ClassOf& class_of) {
+  if (options_.groups == 0) return;
+  groups_.resize(image.trees.size());
+  parallel_for(groups_.size(), [&](std::size_t tile) { groups_[tile] = groups_of(image, tile, class_of); });
+}
+
+void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
+  if (options_.tunnels == 0) return;
+  tunnels_.assign(image.trees.size(), {});
+  parallel_for(tunnels_.size(), [&](std::size_t tile) {
+    LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of);
+    tunnels_[tile] =
+        TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
+  });
+}
+
+void ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
+                          const ClassOf& class_of) {
+  if (has_groups()) groups_[tile] = groups_of(image, tile, class_of);
+  if (!has_tunnels()) return;
+  LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of);
+  tunnels_[tile] = tunnels_[tile].rebuilt(changed, options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
+}
+
+std::size_t ImageRegions::group_bytes() const {
+  std::size_t sum = 0;
+  for (const PathGroups& groups : groups_) sum += groups.bytes();
+  return sum;
+}
+
+std::size_t ImageRegions::tunnel_bytes() const {
+  std::size_t sum = 0;
+  for (const TileTunnels& tunnels : tunnels_) sum += tunnels.bytes();
+  return sum;
+}
+
+}  // namespace relook

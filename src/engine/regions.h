@@ -1,0 +1,51 @@
+// The image quadtree with what its regions know: groups of paths, and tunnels around ray trees (paper 3). Kept equal to
+// what would be built afresh from the image, whatever journal has been replayed.
+#pragma once
+#include <vector>
+
+#include "engine/image.h"
+#include "region/path_groups.h"
+#include "region/tile_tunnels.h"
+#include "trace/grow.h"
+
+namespace relook {
+
+/// Which structures are kept beside ray paths and ray trees.
+struct RegionOptions {
+  std::size_t groups = 4;   // most paths of a group; 0: none
+  std::size_t tunnels = 1;  // a region's; 0: none
+  std::uint32_t atoms = 0;  // depth of the node hierarchy from which nodes count as one object; 0: none
+};
+
+class ImageRegions {
+ public:
+  explicit ImageRegions(const RegionOptions& options) : options_(options) {}
+  [[nodiscard]] const RegionOptions& options() const { return options_; }
+
+  /// Groups of all tiles, afresh. `class_of`: see PathGroups.
+  void build_groups(const Image& image, const ClassOf& class_of);
+  /// Tunnels of all tiles, afresh. `grow`: the scene in which the image's trees hold.
+  void build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
+  void drop_tunnels() { tunnels_.clear(); }
+  [[nodiscard]] bool has_groups() const { return !groups_.empty(); }
+  [[nodiscard]] bool has_tunnels() const { return !tunnels_.empty(); }
+
+  /// After the trees of some leaves of a tile have changed: its groups and, if there are any, its tunnels. Tiles may be
+  /// updated at the same time.
+  void update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
+              const ClassOf& class_of);
+
+  [[nodiscard]] const PathGroups& groups(std::size_t tile) const { return groups_[tile]; }
+  [[nodiscard]] const TileTunnels& tunnels(std::size_t tile) const { return tunnels_[tile]; }
+  [[nodiscard]] std::size_t group_bytes() const;
+  [[nodiscard]] std::size_t tunnel_bytes() const;
+
+ private:
+  [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile,
+                                     const ClassOf& class_of) const;
+  RegionOptions options_;
+  std::vector<PathGroups> groups_;
+  std::vector<TileTunnels> tunnels_;
+};
+
+}  // namespace relook

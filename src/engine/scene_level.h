@@ -1,0 +1,28 @@
+// The top level over the whole scene through a series of edits: what an edit moves is hidden in the level built before
+// and put into a small one on top of it, so that the price of an edit follows from the edit.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "trace/tracer.h"
+
+namespace relook {
+
+class SceneLevel {
+ public:
+  explicit SceneLevel(bool count_blockers = false) : tracer_(count_blockers) {}
+  [[nodiscard]] Tracer& tracer() { return tracer_; }
+
+  /// Notes objects whose entries in the ray scene are others than before.
+  void note_changed(std::span<const ObjectId> objects);
+  /// The scene as it is now, without the objects `absent` (increasing). Valid until the next call.
+  [[nodiscard]] const Tracer::TopLevel& current(const RayScene& scene, std::span<const ObjectId> absent = {});
+
+ private:
+  Tracer tracer_;
+  Tracer::TopLevel level_;
+  bool is_built_ = false;
+  std::vector<ObjectId> changed_;  // since the level was built, increasing
+};
+
+}  // namespace relook

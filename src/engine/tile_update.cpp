@@ -1,0 +1,136 @@
+#include "engine/tile_update.h"
+
+#include <algorithm>
+
+#include "engine/sampling.h"
+#include "trace/probe.h"
+
+namespace relook {
+namespace {
+
+constexpr std::size_t kChunkSamples = 2048;
+
+class TileUpdater {
+ public:
+  TileUpdater(const UpdatePass& pass, std::size_t tile, Shader& shader)
+      : p_(pass),
+        trees_(pass.image.trees[tile]),
+        rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
+        primaries_(pass.grow.scene.scene().camera, pass.image.view),
+        shader_(shader) {}
+
+  /// Leaves in rows, so that samples come in increasing order.
+  TileUpdate update(const TileWork& work) {
+    const std::uint32_t width = rect_.x1 - rect_.x0, height = rect_.y1 - rect_.y0;
+    const std::uint32_t samples = p_.image.view.samples;
+    by_leaf_.fill(nullptr);
+    for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
+    for (std::uint32_t y = 0; y < height; ++y)
+      for (std::uint32_t column = 0; column * kLeafSize < width; ++column) {
+        const std::uint32_t leaf = y / kLeafSize * kLeafSide + column;
+        if (!work.leaves.test(leaf)) continue;
+        const std::uint32_t x0 = column * kLeafSize, x1 = std::min(x0 + kLeafSize, width);
+        for (std::uint32_t sample = (y * width + x0) * samples; sample < (y * width + x1) * samples; ++sample)
+          update_sample(sample, by_leaf_[leaf]);
+      }
+    flush();
+    return std::move(result_);
+  }
+
+ private:
+  void update_sample(std::uint32_t sample, const LeafTouches* leaf) {
+    static const Touches kNoTouches;
+    const PathId path = trees_.paths[sample];
+    const std::uint8_t task = p_.tasks.of_path[path.index()];
+    const Touches* touches = leaf != nullptr ? leaf->of(p_.classes.of(path)) : nullptr;
+    const bool tests_all = p_.change.rays.lights_changed || (p_.tunnel_test == nullptr && p_.change.touches_segments());
+    if (task == 0 && touches == nullptr && !tests_all) return;
+    const SpawnedRay primary = primaries_.ray(rect_, sample);
+    const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}), trees_.hits_of(sample).data()};
+    bool update = (task & kUpdateTree) != 0 || tests_all;
+    if (!update && touches != nullptr) update = probe(*touches, primary, stored);
+    if (!update && (task & kShade) == 0) return;
+    const TreeBlock::Mark mark = block_.mark();
+    bool changed = false;
+    std::uint32_t root = 0;
+    if (update) {
+      const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &kNoTouches;
+      root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
+    } else {
+      root = expand_tree(p_.grow, primary, sample, stored, block_);
+    }
+    if (p_.keeps_trees && (changed || p_.change.rays.lights_changed)) pack_sample(root, sample);
+    if (!changed && (task & kShade) == 0) {
+      block_.rewind(mark);
+      return;
+    }
+    roots_.push_back(root);
+    result_.shaded.push_back(sample);
+    if (roots_.size() == kChunkSamples) flush();
+  }
+
+  /// The tests of a tree that is then updated are counted there.
+  bool probe(const Touches& touches, const SpawnedRay& primary, const StoredTree& stored) {
+    GrowCounters counters;
+    if (probe_tree(p_.grow, p_.change.rays, touches, primary, stored, counters)) return true;
+    result_.counters.ray_tests += counters.ray_tests;
+    return false;
+  }
+
+  void flush() {
+    if (roots_.empty()) return;
+    const std::size_t first = result_.colors.size();
+    result_.colors.resize(first + roots_.size());
+    shader_.shade(block_, roots_, std::span(result_.colors).subspan(first));
+    block_.clear();
+    roots_.clear();
+  }
+
+  void pack_sample(std::uint32_t root, std::uint32_t sample) {
+    words_.clear();
+    result_.packed.push_back(sample);
+    pack(block_, root, p_.grow.layout(), words_, result_.hits);
+    result_.packed_paths.push_back(result_.paths.intern(words_));
+    result_.first_hit.push_back(static_cast<std::uint32_t>(result_.hits.size()));
+  }
+
+  const UpdatePass& p_;
+  const TileTrees& trees_;
+  TileRect rect_;
+  PrimaryRays primaries_;
+  Shader& shader_;
+  std::array<const LeafTouches*, kLeaves> by_leaf_{};
+  TreeBlock block_;
+  std::vector<std::uint32_t> roots_, words_;
+  TileUpdate result_;
+};
+
+}  // namespace
+
+TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
+  TileWork work;
+  if (pass.change.rays.lights_changed || (pass.change.touches_segments() && pass.tunnel_test == nullptr)) {
+    work.leaves.set();
+    return work;
+  }
+  if (pass.tasks.any) {
+    if (pass.regions.has_groups())
+      select_leaves(pass.regions.groups(tile), pass.tasks.of_class, work.by_path, work.by_groups);
+    else
+      work.by_path.set();
+  }
+  work.leaves = work.by_path;
+  if (pass.change.touches_segments()) {
+    find_touched_leaves(pass.regions.tunnels(tile), *pass.tunnel_test, work.touched, work.by_tunnels);
+    for (const LeafTouches& leaf : work.touched) work.leaves.set(leaf.leaf);
+  }
+  return work;
+}
+
+TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<Shader>& shaders) {
+  if (work.leaves.none()) return {};
+  const auto shader = shaders.take([&] { return std::make_unique<Shader>(pass.grow.scene, pass.programs); });
+  return TileUpdater(pass, tile, *shader).update(work);
+}
+
+}  // namespace relook

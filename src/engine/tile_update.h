@@ -1,0 +1,52 @@
+// One pass over a tile after a change of the scene: the ray trees and colours of the samples that it may reach, worked
+// out anew. Nothing is stored yet, so tiles can be done at the same time.
+#pragma once
+#include <vector>
+
+#include "base/pool.h"
+#include "color/shade.h"
+#include "engine/change.h"
+#include "engine/path_tasks.h"
+#include "engine/regions.h"
+
+namespace relook {
+
+/// Where to look in a tile.
+struct TileWork {
+  Leaves leaves;                     // with samples that the change may reach
+  Leaves by_path;                    // of these, what the paths tell
+  std::vector<LeafTouches> touched;  // of these, what tunnels tell about their segments; increasing by leaf
+  RegionCounters by_groups, by_tunnels;
+};
+
+/// What became of the samples of one tile.
+struct TileUpdate {
+  std::vector<std::uint32_t> shaded;  // samples with new colours
+  std::vector<Rgba> colors;           // of `shaded`
+  std::vector<std::uint32_t> packed;  // samples with new trees, increasing
+  PathTable paths;                    // of `packed`, numbered within the tile
+  std::vector<PathId> packed_paths;
+  std::vector<Hit> hits;
+  std::vector<std::uint32_t> first_hit{0};
+  GrowCounters counters;
+};
+
+/// What all tiles of a pass have in common.
+struct UpdatePass {
+  const Image& image;
+  const std::vector<LightId>& lights;  // light order of the image's paths
+  const GrowScene& grow;               // the scene after the change
+  const StepChange& change;
+  const PathTasks& tasks;
+  const PathClasses& classes;
+  const ImageRegions& regions;
+  const TunnelTest* tunnel_test = nullptr;  // null: without tunnels, every segment is tested
+  ProgramTable& programs;
+  bool keeps_trees = true;                  // false: an intermediate frame of a drag
+};
+
+[[nodiscard]] TileWork find_tile_work(const UpdatePass& pass, std::size_t tile);
+[[nodiscard]] TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,
+                                     Pool<Shader>& shaders);
+
+}  // namespace relook

@@ -1,0 +1,222 @@
+#include "region/tunnel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace relook {
+namespace {
+
+/// The section of a history, put in if it is not there. Histories come in the order of preorder walks, so the wanted
+/// one is near the end.
+TunnelSection& section_of(Sections& tunnel, History history) {
+  std::size_t at = tunnel.size();
+  while (at > 0 && tunnel[at - 1].history > history) --at;
+  if (at > 0 && tunnel[at - 1].history == history) return tunnel[at - 1];
+  TunnelSection section;
+  section.history = history;
+  return *tunnel.insert(tunnel.begin() + static_cast<std::ptrdiff_t>(at), section);
+}
+
+void extend(Box& box, const Point& point, float margin) {
+  const Point around(margin, margin, margin);
+  box.extendBy(point - around);
+  box.extendBy(point + around);
+}
+
+Box grown(const Box& box, float margin) {
+  const Point around(margin, margin, margin);
+  return Box(box.min - around, box.max + around);
+}
+
+/// How far what leaves `from` has to be followed until it is past all of `target`.
+float reach(const Box& from, const Box& target) {
+  Box all = from;
+  all.extendBy(target);
+  return all.size().length() * 1.01F;
+}
+
+/// Where the rays of a section start.
+Box origins_of(std::span<const TunnelSection> tunnel, const TunnelSection& section) {
+  const History parent = parent_of(section.history);
+  const auto it = std::ranges::find(tunnel, parent, &TunnelSection::history);
+  require(it != tunnel.end(), "a section's parent is in the tunnel");
+  Box origins = it->points;
+  if (is_folded(section.history)) origins.extendBy(section.points);
+  return origins;
+}
+
+/// Rounding of rays between these boxes: where a ray is, seen from an object, is known to this many metres.
+float margin(const Box& from, const Box& to, const ChangeBoxes& change) {
+  constexpr float kRounding = 0x1p-16F;
+  float largest = 0;
+  for (const Box* box : {&from, &to})
+    for (int axis = 0; axis < 3; ++axis)
+      largest = std::max(largest, std::max(std::fabs(box->min[axis]), std::fabs(box->max[axis])));
+  return largest * kRounding * change.condition;
+}
+
+/// Is the target in the way of segments between the boxes?
+bool is_between(const Box& from, const Box& to, float slack, const BoxSet& target, const TunnelTest& test) {
+  const float around = margin(from, to, test.change);
+  return touches({grown(from, around), grown(to, around + slack)}, target);
+}
+/// Is it in the way of rays from a box in some unit directions?
+bool is_beyond(const Box& from, const Box& directions, const BoxSet& target, const TunnelTest& test) {
+  const Shaft shaft = extruded(from, directions, reach(from, target.all));
+  return is_between(shaft.from, shaft.to, 0, target, test);
+}
+
+bool is_ray_touched(std::span<const TunnelSection> tunnel, const TunnelSection& section, const TunnelTest& test) {
+  const BoxSet& target = test.change.moved;
+  if (section.history == kEye || target.empty()) return false;
+  const Box origins = origins_of(tunnel, section);
+  if (!section.points.isEmpty() && is_between(origins, section.points, section.slack, target, test)) return true;
+  return !section.leaving.isEmpty() && is_beyond(origins, section.leaving, target, test);
+}
+
+bool is_light_touched(const TunnelSection& section, const LightEnd& light, const BoxSet& target, const TunnelTest& test) {
+  if (target.empty()) return false;
+  return light.directional ? is_beyond(section.points, light.end, target, test)
+                           : is_between(section.points, light.end, 0, target, test);
+}
+
+/// Marks the ancestors of what is touched.
+void mark_ancestors(Touches& touches) {
+  const std::size_t touched = touches.size();
+  for (std::size_t i = 0; i < touched; ++i) {
+    for (History history = touches[i].history; history != kEye;) {
+      history = parent_of(history);
+      const auto it = std::ranges::find(touches, history, &Touch::history);
+      if (it != touches.end()) {
+        it->below = true;
+        continue;
+      }
+      Touch ancestor;
+      ancestor.history = history;
+      ancestor.below = true;
+      touches.push_back(ancestor);
+    }
+    if (is_folded(touches[i].history)) touches[i].below = true;
+  }
+  std::ranges::sort(touches, {}, &Touch::history);
+}
+
+}  // namespace
+
+void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, std::uint32_t root,
+             std::vector<History>& scratch) {
+  const std::size_t lights = scene.scene().light_order.size();
+  const std::uint32_t sample = block.nodes[root].sample;
+  scratch.clear();
+  for (std::uint32_t i = root; i < block.nodes.size() && block.nodes[i].sample == sample; ++i) {
+    const RayNode& node = block.nodes[i];
+    const bool is_primary = i == root;
+    scratch.push_back(is_primary ? kPrimary : child_of(scratch[node.parent - root], node.ray.branch));
+    if (is_primary) section_of(tunnel, kEye).points.extendBy(node.ray.origin);
+    TunnelSection& section = section_of(tunnel, scratch.back());
+    if (node.object.is_none()) {
+      section.leaving.extendBy(node.ray.direction);
+      continue;
+    }
+    const RayObject& object = scene.object(node.object);
+    extend(section.points, node.point.position, node.point.offset);
+    section.slack = std::max(section.slack, distance_slack(node, object));
+    for (std::size_t light = 0; light < lights; ++light) {
+      const ShadowState state = block.lights[node.first_light + light].state;
+      if (state == ShadowState::blocked) section.blocked |= light_bit(light);
+      if (state == ShadowState::open || state == ShadowState::filtered) section.open |= light_bit(light);
+    }
+  }
+}
+
+void enclose(Sections& tunnel, std::span<const TunnelSection> other) {
+  for (const TunnelSection& section : other) {
+    TunnelSection& own = section_of(tunnel, section.history);
+    own.slack = std::max(own.slack, section.slack);
+    own.open |= section.open;
+    own.blocked |= section.blocked;
+    own.points.extendBy(section.points);
+    own.leaving.extendBy(section.leaving);
+  }
+}
+
+std::vector<LightEnd> light_ends(const Scene& scene) {
+  std::vector<LightEnd> ends;
+  for (LightId id : scene.light_order) {
+    const Light& light = scene.light(id);
+    const bool directional = light.kind == LightKind::directional;
+    ends.push_back({directional, Box(directional ? -light.direction : light.position)});
+  }
+  return ends;
+}
+
+BoxSet box_set(std::vector<Box>& boxes, std::size_t most) {
+  BoxSet set;
+  for (const Box& box : boxes) set.all.extendBy(box);
+  if (boxes.size() < 2) return set;
+  // Halves the part with the longest side at its middle object, until there are enough parts.
+  struct Part {
+    std::size_t first, last;
+    Box box;
+  };
+  std::vector<Part> parts{{0, boxes.size(), set.all}};
+  const auto length = [](const Part& part) {
+    const Point size = part.box.size();
+    return part.last - part.first < 2 ? -1.0F : std::max(std::max(size.x, size.y), size.z);
+  };
+  while (parts.size() < most) {
+    const auto longest = std::ranges::max_element(parts, {}, length);
+    if (length(*longest) < 0) break;
+    const Part part = *longest;
+    const unsigned axis = part.box.majorAxis();
+    const std::size_t middle = (part.first + part.last) / 2;
+    const auto at = [&](std::size_t i) { return boxes.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(part.first), at(middle), at(part.last), [axis](const Box& a, const Box& b) {
+      return a.min[static_cast<int>(axis)] + a.max[static_cast<int>(axis)] <
+             b.min[static_cast<int>(axis)] + b.max[static_cast<int>(axis)];
+    });
+    const auto around = [&](std::size_t first, std::size_t last) {
+      Part half{first, last, {}};
+      for (std::size_t i = first; i < last; ++i) half.box.extendBy(boxes[i]);
+      return half;
+    };
+    *longest = around(part.first, middle);
+    parts.push_back(around(middle, part.last));
+  }
+  for (const Part& part : parts) set.parts.push_back(part.box);
+  return set;
+}
+
+bool touches(const Shaft& shaft, const BoxSet& boxes) {
+  if (boxes.empty() || !touches(shaft, boxes.all)) return false;
+  return boxes.parts.empty() || std::ranges::any_of(boxes.parts, [&](const Box& part) { return touches(shaft, part); });
+}
+
+bool find_touches(std::span<const TunnelSection> tunnel, const TunnelTest& test, Touches* touches) {
+  if (touches != nullptr) touches->clear();
+  bool any = false;
+  for (const TunnelSection& section : tunnel) {
+    Touch touch;
+    touch.history = section.history;
+    touch.ray = is_ray_touched(tunnel, section, test);
+    for (std::size_t light = 0; (section.open | section.blocked) != 0 && light < test.lights.size(); ++light) {
+      const std::uint32_t bit = light_bit(light);
+      const bool is_open = (section.open & bit) != 0, is_blocked = (section.blocked & bit) != 0;
+      const bool after = (is_open || (is_blocked && test.change.count_blockers)) &&
+                         is_light_touched(section, test.lights[light], test.change.shadows_after, test);
+      const bool before = is_blocked && is_light_touched(section, test.lights[light], test.change.shadows_before, test);
+      if (is_open && after) touch.open |= bit;
+      if (before || (is_blocked && after)) touch.blocked |= bit;
+    }
+    if (!touch.ray && (touch.open | touch.blocked) == 0) continue;
+    if (touches == nullptr) return true;
+    any = true;
+    touches->push_back(touch);
+  }
+  if (any) mark_ancestors(*touches);
+  return any;
+}
+
+}  // namespace relook

@@ -1,0 +1,66 @@
+// Tunnels (paper 3.4.1): around all segments of some ray trees, a section for each branch history with its rays and its
+// shadow segments. A section keeps the boxes of its segments' ends; the shafts between them follow from these.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "region/shaft.h"
+#include "trace/touch.h"
+#include "trace/tree_block.h"
+
+namespace relook {
+
+struct TunnelSection {
+  History history = kEye;
+  float slack = 0;                           // metres that a ray is tested beyond its hit, at most
+  std::uint32_t open = 0, blocked = 0;       // lights that some node's shadow segment reaches, or does not
+  Box points;                                // the hits, and the origins of what leaves them; at kEye: of primary rays
+  Box leaving;                               // unit directions of the rays that met nothing
+
+  bool operator==(const TunnelSection&) const = default;
+};
+
+/// Sections by history, increasing; the first is kEye's. Empty if no tree is inside.
+using Sections = std::vector<TunnelSection>;
+
+/// Extends a tunnel by the tree of the sample whose nodes start at `root`. `scratch`: working memory.
+void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, std::uint32_t root,
+             std::vector<History>& scratch);
+/// Extends a tunnel by another one.
+void enclose(Sections& tunnel, std::span<const TunnelSection> other);
+
+/// The far end of the shadow segments to one light: its position, or the direction to it.
+struct LightEnd {
+  bool directional = false;
+  Box end;
+};
+[[nodiscard]] std::vector<LightEnd> light_ends(const Scene& scene);
+
+/// A group of objects as boxes: the one around all, and if there are several objects smaller ones for parts of it.
+struct BoxSet {
+  Box all;
+  std::vector<Box> parts;
+  [[nodiscard]] bool empty() const { return all.isEmpty(); }
+};
+/// Boxes of at most `most` parts; `boxes` is reordered.
+[[nodiscard]] BoxSet box_set(std::vector<Box>& boxes, std::size_t most = 16);
+[[nodiscard]] bool touches(const Shaft& shaft, const BoxSet& boxes);
+
+/// What a change of the scene can touch, in boxes that hold every hit up to rounding.
+struct ChangeBoxes {
+  BoxSet moved;           // what rays may meet now
+  BoxSet shadows_before;  // what blocked or filtered light
+  BoxSet shadows_after;   // what does so now
+  float condition = 1;          // how much the objects' placement stretches rounding, at least 1
+  bool count_blockers = false;  // a further blocker of a blocked segment is a change, too
+};
+
+struct TunnelTest {
+  const ChangeBoxes& change;
+  const std::vector<LightEnd>& lights;
+};
+/// True if the change may touch the tunnel at all; `touches`, if not null, gets the sections that it may touch.
+bool find_touches(std::span<const TunnelSection> tunnel, const TunnelTest& test, Touches* touches);
+
+}  // namespace relook

@@ -1,0 +1,213 @@
+// What growing and updating of ray trees share, inside src/trace: appending nodes to a block, tracing them against the
+// whole scene, and walking stored trees.
+#pragma once
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "trace/grow.h"
+#include "trace/shadow_counter.h"
+
+namespace relook {
+
+[[nodiscard]] inline FilterNode filter_of(const Crossing& crossing) {
+  FilterNode filter;
+  filter.object = crossing.object;
+  filter.hit = crossing.hit;
+  return filter;
+}
+
+/// Appends nodes to a block; the scene and the sample stay the same.
+class Grower {
+ public:
+  Grower(const GrowScene& grow, std::uint32_t sample, TreeBlock& block) : g_(grow), sample_(sample), b_(block) {}
+
+  std::uint32_t append(const SpawnedRay& ray, std::uint32_t parent) {
+    b_.nodes.emplace_back(parent, sample_, ray);
+    return static_cast<std::uint32_t>(b_.nodes.size() - 1);
+  }
+
+  void set_hit(std::uint32_t index, ObjectId object, const Hit& hit) {
+    RayNode& node = b_.nodes[index];
+    node.object = object;
+    node.hit = hit;
+    complete(node, g_.scene.object(object));
+    node.first_light = static_cast<std::uint32_t>(b_.lights.size());
+    b_.lights.resize(b_.lights.size() + lights().size());
+  }
+
+  Spawned spawned(std::uint32_t index) {
+    RayNode& node = b_.nodes[index];
+    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
+    node.cut_mask = rays.cut_mask;
+    return rays;
+  }
+
+  /// Calls grow_child(branch, ray) -> index for each spawned ray, in order.
+  template <class GrowChild>
+  void for_each_child(std::uint32_t index, const Spawned& rays, const GrowChild& grow_child) {
+    for (std::size_t branch = 0; branch < kBranches; ++branch) {
+      if ((rays.mask >> branch & 1U) == 0) continue;
+      const std::uint32_t child = grow_child(static_cast<Branch>(branch), rays.rays[branch]);
+      b_.nodes[index].child[branch] = child;
+    }
+  }
+
+  void set_link(std::uint32_t index, std::size_t light, ShadowState state) {
+    b_.lights[b_.nodes[index].first_light + light].state = state;
+  }
+  void set_filters(std::uint32_t index, std::size_t light, const ShadowSegment& segment,
+                   std::span<const FilterNode> filters) {
+    LightLink& link = b_.lights[b_.nodes[index].first_light + light];
+    link.state = filters.empty() ? ShadowState::open : ShadowState::filtered;
+    link.first_filter = static_cast<std::uint32_t>(b_.filters.size());
+    link.filters = static_cast<std::uint32_t>(filters.size());
+    b_.filters.insert(b_.filters.end(), filters.begin(), filters.end());
+    complete_filters(g_.scene, b_.nodes[index], segment, b_.filters.data() + link.first_filter, filters.size());
+  }
+
+  /// `entry`: as in paths.
+  void set_blocked(std::uint32_t index, std::size_t light, std::span<const std::uint32_t> entry) {
+    LightLink& link = b_.lights[b_.nodes[index].first_light + light];
+    link.state = ShadowState::blocked;
+    link.first_blocker_word = static_cast<std::uint32_t>(b_.blocker_words.size());
+    b_.blocker_words.insert(b_.blocker_words.end(), entry.begin(), entry.end());
+  }
+
+  /// The segment to a light, if light is gathered here at all.
+  bool gathers(std::uint32_t index, std::size_t light, ShadowSegment& segment) const {
+    const RayNode& node = b_.nodes[index];
+    if (is_interface_only(g_.scene.object(node.object), node.point)) return false;
+    segment = shadow_segment(node.point, g_.scene.scene().light(lights()[light]));
+    return segment.faces;
+  }
+
+  /// Traces one shadow segment against the whole scene.
+  void trace_light(std::uint32_t index, std::size_t light, const ShadowSegment& segment, GrowCounters& counters) {
+    ++counters.shadow_updates;
+    const Ray ray{segment.origin, segment.direction, segment.t_max};
+    if (g_.shadow_bits > 0) {
+      Tracer::blockers(*g_.level, ray, crossings_);
+      if (std::ranges::any_of(crossings_, [&](const Crossing& c) { return !passes_light(c); })) {
+        count_blockers();
+        set_blocked(index, light, entry_);
+        return;
+      }
+    } else if (!Tracer::passes(*g_.level, ray, crossings_)) {
+      set_link(index, light, ShadowState::blocked);
+      return;
+    }
+    filters_.clear();
+    for (const Crossing& crossing : crossings_) filters_.push_back(filter_of(crossing));
+    set_filters(index, light, segment, filters_);
+  }
+
+  /// Traces the shadow segments of all nodes from `first` on: apart from the rays, since like work in a row runs
+  /// faster.
+  void trace_lights(std::uint32_t first, GrowCounters& counters) {
+    ShadowSegment segment;
+    for (std::uint32_t index = first; index < b_.nodes.size(); ++index) {
+      if (b_.nodes[index].object.is_none()) continue;
+      for (std::size_t light = 0; light < lights().size(); ++light)
+        if (gathers(index, light, segment)) trace_light(index, light, segment, counters);
+    }
+  }
+
+  /// Appends a node and everything below it, traced, but for the lights.
+  std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent, GrowCounters& counters) {
+    const std::uint32_t index = append(ray, parent);
+    ++counters.ray_updates;
+    trace_from(index, Tracer::intersect(*g_.level, {ray.origin, ray.direction}), counters);
+    return index;
+  }
+
+  /// Everything below a node whose ray met `meeting`.
+  void trace_from(std::uint32_t index, const Meeting& meeting, GrowCounters& counters) {
+    if (meeting.object.is_none()) return;
+    set_hit(index, meeting.object, meeting.hit);
+    if (!g_.scene.object(meeting.object).optics.spawns()) return;
+    for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
+  }
+
+  [[nodiscard]] const std::vector<LightId>& lights() const { return g_.scene.scene().light_order; }
+  [[nodiscard]] TreeBlock& block() { return b_; }
+  [[nodiscard]] const GrowScene& grow() const { return g_; }
+  std::vector<Crossing> crossings_;
+  std::vector<FilterNode> filters_;
+
+ private:
+  [[nodiscard]] bool passes_light(const Crossing& crossing) const {
+    return g_.scene.object(crossing.object).optics.passes_light;
+  }
+
+  /// The entry of a blocked light from the crossings of its segment (paper 4.2).
+  void count_blockers() {
+    entry_.assign(1, 0);
+    interval_counters_.clear();
+    distinct_.clear();
+    const auto end_interval = [&] {
+      interval_counters_.push_back(ShadowCounter::of(distinct_.size(), g_.shadow_bits).word());
+      distinct_.clear();
+    };
+    for (const Crossing& crossing : crossings_) {
+      if (passes_light(crossing)) {
+        end_interval();
+        ++entry_[0];
+        entry_.push_back(crossing.object.index());
+      } else if (distinct_.size() <= ShadowCounter::most(g_.shadow_bits) &&
+                 std::ranges::find(distinct_, crossing.object) == distinct_.end()) {
+        distinct_.push_back(crossing.object);
+      }
+    }
+    end_interval();
+    entry_.insert(entry_.end(), interval_counters_.begin(), interval_counters_.end());
+  }
+
+  const GrowScene& g_;
+  std::uint32_t sample_;
+  TreeBlock& b_;
+  std::vector<std::uint32_t> entry_, interval_counters_;
+  std::vector<ObjectId> distinct_;  // opaque objects of an interval, as many as matter
+};
+
+/// Reads the filters of a stored node, light by light. `hits`: the first after the node's own.
+class FilterReader {
+ public:
+  explicit FilterReader(const Hit* hits) : hits_(hits) {}
+  /// Those of the next filtered light, whose objects are `objects`.
+  void next(std::span<const std::uint32_t> objects, std::vector<FilterNode>& filters) {
+    filters.clear();
+    for (const std::uint32_t object : objects) {
+      FilterNode filter;
+      filter.object = ObjectId(object);
+      filter.hit = *hits_++;
+      filters.push_back(filter);
+    }
+  }
+
+ private:
+  const Hit* hits_;
+};
+
+/// Takes the next node and its hits off a stored tree.
+[[nodiscard]] inline PathNode take(StoredTree& stored, const Hit*& hits) {
+  const PathNode node = stored.cursor.next();
+  hits = stored.hits;
+  if (!node.is_miss()) stored.hits += 1 + node.filter_hits;
+  return node;
+}
+
+inline void skip_children(StoredTree& stored, const PathNode& node) {
+  for (unsigned owed = node.children(); owed > 0; --owed) {
+    const Hit* hits = nullptr;
+    owed += take(stored, hits).children();
+  }
+}
+
+inline void skip_tree(StoredTree& stored) {
+  const Hit* hits = nullptr;
+  const PathNode node = take(stored, hits);
+  skip_children(stored, node);
+}
+
+}  // namespace relook
