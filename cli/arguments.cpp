@@ -50,11 +50,11 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--memory", raw.memory, std::string("Budget in bytes, like 2G") + kRecorded);
   verb.add_option("--ray-trees", raw.ray_trees, std::string("Percentage of ray trees kept") + kRecorded);
   verb.add_option("--color-trees", raw.color_trees, std::string("Percentage of colour trees kept") + kRecorded);
-  verb.add_option("--tunnels", structures.tunnels, std::string("Lowest levels with tunnels") + kRecorded)
+  verb.add_option("--tunnels", structures.tunnels, "Most tunnels of a region, the last for all further paths; 0: none")
       ->check(CLI::Range(0, 16));
-  verb.add_option("--groups", structures.groups, std::string("Most paths of a group; 0: none") + kRecorded)
-      ->check(CLI::Range(0, 1024));
-  verb.add_option("--atoms", structures.atoms, std::string("Depth at which nodes become atoms") + kRecorded)
+  verb.add_option("--groups", structures.groups, "Most paths of a group; 0: none")
+      ->check(CLI::Range(0, 64));
+  verb.add_option("--atoms", structures.atoms, "Depth of the node hierarchy at which nodes count as one object for groups; 0: none")
       ->check(CLI::Range(0, 64));
   verb.add_option("--shadow-bits", arguments.shadow_bits, "Bits of a shadow counter, fixed by preprocess; 0: a flag")
       ->check(CLI::Range(0, 4));
@@ -97,6 +97,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_output(replay, arguments, "Run folder to write")->required();
   replay.add_flag("--verify{100}", raw.verify, "Compare with a full render after each step; =PERCENT of the tiles");
   replay.add_flag("--baseline", arguments.baseline, "Measure one full render for the report");
+  replay.add_flag("--overlays", arguments.overlays, "Write images of the regions that each step found, on its frame");
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
   add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
   add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");

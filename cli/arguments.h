@@ -31,6 +31,7 @@ struct Arguments {
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
   std::size_t threads = 0;  // 0: all
   bool quiet = false, json = false;
+  bool overlays = false;  // images of the regions found
   ProgressStyle progress = ProgressStyle::automatic;
 
   std::string journal;                // render

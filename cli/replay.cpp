@@ -20,6 +20,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+RegionOptions region_options(const StructureOptions& structures) {
+  return {structures.groups, structures.tunnels, structures.atoms};
+}
+
 /// Replays one journal into one run folder.
 class JournalRun {
  public:
@@ -36,9 +40,8 @@ class JournalRun {
   void base_step();
   void edit_step(const JournalStep& step);
   void drag_step(const JournalStep& step);
-  StepResult apply(StepReport& entry, const Edit& edit);
-  void finish(StepReport entry, std::span<const std::uint32_t> changed_pixels,
-              std::chrono::steady_clock::time_point start);
+  static void fill(StepReport& entry, const StepResult& result);
+  void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
   void verify(StepReport& entry);
   Frame full_render();
   void print(const StepReport& entry);
@@ -57,7 +60,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
     : arguments_(arguments),
       console_(console),
       journal_(journal),
-      replayer_(std::move(*restored.state), std::move(restored.image)),
+      replayer_(std::move(*restored.state), std::move(restored.image), region_options(arguments.structures)),
       folder_(folder, replayer_.image().frame.width, replayer_.image().frame.height,
               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half) {
   report_.scene = replayer_.state().document().file;
@@ -101,17 +104,14 @@ void JournalRun::base_step() {
   const Frame& frame = replayer_.image().frame;
   entry.counters.samples_total = std::uint64_t{frame.width} * frame.height * report_.view.samples;
   if (arguments_.baseline && !arguments_.verify_percent) full_render();
-  finish(std::move(entry), {}, std::chrono::steady_clock::now());
+  finish(std::move(entry), StepResult(), std::chrono::steady_clock::now());
 }
 
-StepResult JournalRun::apply(StepReport& entry, const Edit& edit) {
-  console_.check_interrupt();
-  StepResult result = replayer_.step(edit, journal_.file, journal_.path.parent_path());
+void JournalRun::fill(StepReport& entry, const StepResult& result) {
   entry.change = result.classification.change;
   entry.reasons = result.classification.reasons;
   entry.counters = result.counters;
   entry.seconds = result.seconds;
-  return result;
 }
 
 void JournalRun::edit_step(const JournalStep& step) {
@@ -119,8 +119,10 @@ void JournalRun::edit_step(const JournalStep& step) {
   StepReport entry;
   entry.step = report_.steps.back().step + 1;
   entry.name = step.name;
-  const StepResult result = apply(entry, step.edit);
-  finish(std::move(entry), result.changed_pixels, start);
+  console_.check_interrupt();
+  const StepResult result = replayer_.step(step.edit, journal_.file, journal_.path.parent_path());
+  fill(entry, result);
+  finish(std::move(entry), result, start);
 }
 
 void JournalRun::drag_step(const JournalStep& step) {
@@ -132,25 +134,29 @@ void JournalRun::drag_step(const JournalStep& step) {
     entry.step = number;
     entry.name = step.name;
     entry.drag_frame = i + 1;
-    const StepResult result = apply(entry, step.drag[i]);
+    console_.check_interrupt();
+    const StepResult result = replayer_.drag(step.drag[i], journal_.file, journal_.path.parent_path());
+    fill(entry, result);
     change = combined(change, entry.change);
-    finish(std::move(entry), result.changed_pixels, start);
+    finish(std::move(entry), result, start);
   }
+  const auto start = std::chrono::steady_clock::now();
+  const StepResult result = replayer_.release();
   StepReport released;
+  fill(released, result);
   released.step = number;
   released.name = step.name;
   released.change = change;
   released.reasons = {"the selection is released where the last entry put it"};
-  released.counters.samples_total = report_.steps.back().counters.samples_total;
-  finish(std::move(released), {}, std::chrono::steady_clock::now());
+  finish(std::move(released), result, start);
 }
 
-void JournalRun::finish(StepReport entry, std::span<const std::uint32_t> changed_pixels,
-                        std::chrono::steady_clock::time_point start) {
+void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {
   FrameMeta meta;
   meta.scene_hash = report_.scene_hash;
   meta.journal_hash = report_.journal_hash;
-  folder_.write_step(entry, replayer_.image().frame, changed_pixels, std::move(meta));
+  folder_.write_step(entry, replayer_.image().frame, result.changed_pixels, std::move(meta));
+  if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
   entry.seconds.total = seconds_since(start);
   entry.resident = replayer_.resident();
   entry.peak_rss_bytes = peak_rss_bytes();

@@ -7,11 +7,12 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "engine/overlay.h"
 
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 4> kRunEntries{"frames", "previews", "report.json", "report.html"};
+constexpr std::array<std::string_view, 5> kRunEntries{"frames", "previews", "overlays", "report.json", "report.html"};
 
 void remove_entry(const std::filesystem::path& path) {
   std::error_code error;
@@ -61,6 +62,21 @@ void RunFolder::write_step(StepReport& step, const Frame& frame, std::span<const
   write_file(path_ / step.frame, bytes);
   write_file(path_ / step.preview, preview_);
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result) const {
+  make_folders(path_ / "overlays");
+  const auto write = [&](const char* kind, const auto& draw) {
+    Frame frame = replayer.image().frame;
+    for (std::size_t tile = 0; tile < tile_count(frame.width, frame.height); ++tile) draw(frame, tile);
+    write_file(path_ / "overlays" / (std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png"), encode_png(frame));
+  };
+  if (!result.dependent.empty()) {
+    write("dependent", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.dependent[tile]); });
+    write("touched", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.touched[tile]); });
+  }
+  if (replayer.regions().has_groups())
+    write("groups", [&](Frame& frame, std::size_t tile) { draw_groups(frame, tile, replayer.regions().groups(tile)); });
 }
 
 void RunFolder::write_report(const RunReport& report) const {
