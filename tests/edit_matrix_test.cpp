@@ -5,6 +5,7 @@
 
 #include "engine/render.h"
 #include "engine/replay.h"
+#include "region_checks.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
 
@@ -215,6 +216,7 @@ TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
     EXPECT_EQ(different_pixels(replayer.image().frame, full).size(), 0U);
     EXPECT_EQ(different_pixels(fresh.frame, full).size(), 0U);
     EXPECT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
+    EXPECT_EQ(stale_tiles(replayer), 0U);
     EXPECT_EQ(step.changed_pixels, different_pixels(before, full));
     EXPECT_EQ(step.counters.pixels_changed, step.changed_pixels.size());
     EXPECT_LE(step.counters.pixels_changed, step.counters.samples_affected);
@@ -246,6 +248,56 @@ std::vector<MatrixCase> all_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table1, EditMatrix, testing::ValuesIn(all_cases()), case_name);
+
+/// Groups, tunnels, atoms and shadow counters decide what is looked at, never what is found.
+struct StructureCase {
+  RegionOptions regions;
+  std::uint32_t shadow_bits;
+};
+
+std::vector<StructureCase> every_combination() {
+  std::vector<StructureCase> cases;
+  for (const std::size_t groups : {0U, 1U, 4U})
+    for (const std::size_t tunnels : {0U, 1U, 2U})
+      for (const std::uint32_t atoms : {0U, 1U})
+        for (const std::uint32_t shadow_bits : {0U, 1U, 2U, 3U, 4U})
+          cases.push_back({{groups, tunnels, atoms}, shadow_bits});
+  return cases;
+}
+
+std::vector<Row> structure_rows() {
+  return {
+      row("colour", set("/materials/Matte/pbrMetallicRoughness/baseColorFactor", {0.2, 0.7, 0.3, 1})),
+      row("index of refraction", set("/materials/Glass/extensions/KHR_materials_ior/ior", 1.8)),
+      row("let light through", set("/materials/Matte/extensions/KHR_materials_transmission/transmissionFactor", 0.5)),
+      row("move", set("/nodes/Ball/translation", {0.4, 0.9, 0.3})),
+      row("move two", set("/nodes/MirrorBall/translation", {-1.2, 1.1, 0.2}), set("/nodes/GlassBall/scale", {0.8, 0.8, 0.8})),
+      row("hide", set("/nodes/Ball/extensions/KHR_node_visibility/visible", false)),
+      row("block light again", set("/materials/Matte/extensions/KHR_materials_transmission/transmissionFactor", 0)),
+      row("show", set("/nodes/Ball/extensions/KHR_node_visibility/visible", true)),
+      row("move a light", set("/nodes/Lamp/translation", {1.5, 4.2, 2.5})),
+  };
+}
+
+TEST(Structures, NoCombinationChangesAFrame) {
+  for (const StructureCase& c : every_combination()) {
+    SCOPED_TRACE("groups " + std::to_string(c.regions.groups) + ", tunnels " + std::to_string(c.regions.tunnels) +
+                 ", atoms " + std::to_string(c.regions.atoms) + ", shadow bits " + std::to_string(c.shadow_bits));
+    const ViewOptions view{1, 5, c.shadow_bits};
+    SceneState state = test_scene(TestScene::study, 40, 30);
+    Image image = preprocessed(state.scene(), view);
+    Replayer replayer(std::move(state), std::move(image), c.regions);
+    for (const Row& row : structure_rows()) {
+      SCOPED_TRACE(row.name);
+      replayer.step(edit_of(row.operations), "structures", ".");
+      const SceneState again = compiled_again(replayer.state());
+      const Image fresh = preprocessed(again.scene(), view);
+      EXPECT_EQ(different_pixels(replayer.image().frame, fresh.frame).size(), 0U);
+      EXPECT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
+      EXPECT_EQ(stale_tiles(replayer), 0U);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace relook

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "engine/render.h"
 #include "engine/replay.h"
+#include "region_checks.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
 
@@ -226,10 +227,62 @@ std::string random_case_name(const testing::TestParamInfo<RandomCase>& info) {
          std::to_string(info.param.threads) + "_threads_" + std::to_string(info.param.shadow_bits) + "_bits";
 }
 
-Replayer replayer_of(TestScene scene, ViewOptions view) {
+Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions) {
   SceneState state = view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
   Image image = preprocessed(state.scene(), view);
-  return Replayer(std::move(state), std::move(image));
+  return Replayer(std::move(state), std::move(image), regions);
+}
+
+RegionOptions random_regions(Dice& dice) {
+  RegionOptions regions{dice.one_of(std::vector<std::size_t>{0, 1, 4}), dice.below(3),
+                        static_cast<std::uint32_t>(dice.below(3))};
+  std::cout << "groups " << regions.groups << ", tunnels " << regions.tunnels << ", atoms " << regions.atoms << "\n";
+  return regions;
+}
+
+void expect_full_render(const Replayer& replayer, const std::string& what) {
+  const SceneState again = compiled_again(replayer.state());
+  ASSERT_EQ(different_pixels(replayer.image().frame, rendered(again.scene(), replayer.image().view)).size(), 0U) << what;
+}
+
+void expect_fresh_structures(const Replayer& replayer, const std::string& what) {
+  const SceneState again = compiled_again(replayer.state());
+  const Image fresh = preprocessed(again.scene(), replayer.image().view);
+  ASSERT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U) << what;
+  ASSERT_EQ(stale_tiles(replayer), 0U) << what;
+}
+
+/// One frame of a drag: something that a node's selection can do, now and then to its light.
+Change random_movement(const Json& look, const std::string& node, Dice& dice) {
+  Change change;
+  const std::string pointer = "/nodes/" + node;
+  if (dice.chance(0.15))
+    change.set(look, pointer + "/extensions/KHR_node_visibility/visible", dice.chance(0.5));
+  else if (dice.chance(0.3))
+    change.set(look, pointer + "/scale", {dice.between(0.5, 1.3), dice.between(0.5, 1), 1});
+  else
+    change.set(look, pointer + "/translation", {dice.between(-1.5, 1.5), dice.between(0.3, 3), dice.between(-1, 1.5)});
+  return change;
+}
+
+/// A drag of several frames, of one node after the other; then the release.
+void drag_at_random(Replayer& replayer, Dice& dice, const std::string& what) {
+  const std::size_t frames = 1 + dice.below(4);
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    const std::string node = dice.one_of(std::vector<std::string>{"Ball", "MirrorBall", "GlassBall", "Ball", "Lamp"});
+    const Change change = random_movement(replayer.state().document().look, node, dice);
+    const Frame before = replayer.image().frame;
+    const StepResult step = replayer.drag(edit_of_list(change.forward), "random", ".");
+    const std::string where = what + " drag " + Json(change.forward).dump();
+    expect_full_render(replayer, where);
+    ASSERT_EQ(step.changed_pixels, different_pixels(before, replayer.image().frame)) << where;
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  const Frame before = replayer.image().frame;
+  const StepResult step = replayer.release();
+  ASSERT_TRUE(step.changed_pixels.empty()) << what;
+  ASSERT_EQ(different_pixels(before, replayer.image().frame).size(), 0U) << what;
+  expect_fresh_structures(replayer, what);
 }
 
 TEST_P(RandomJournal, EveryFrameIsAFullRender) {
@@ -239,7 +292,7 @@ TEST_P(RandomJournal, EveryFrameIsAFullRender) {
   set_thread_count(threads);
   Dice dice(seed + 7919 * samples + static_cast<std::uint64_t>(scene));
   const ViewOptions view{samples, 5, shadow_bits};
-  Replayer replayer = replayer_of(scene, view);
+  Replayer replayer = replayer_of(scene, view, random_regions(dice));
   std::size_t steps_that_changed = 0;
   for (std::size_t k = 1; k <= kSteps; ++k) {
     const Change change = random_change(replayer.state().document().look, dice);
@@ -255,12 +308,17 @@ TEST_P(RandomJournal, EveryFrameIsAFullRender) {
     ASSERT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments) << what;
     steps_that_changed += step.changed_pixels.empty() ? 0 : 1;
     if (k % 10 == 0) {
-      const Image fresh = preprocessed(again.scene(), view);
-      ASSERT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U) << what;
+      ASSERT_NO_FATAL_FAILURE(expect_fresh_structures(replayer, what));
+    }
+    if (dice.chance(0.1)) {
+      ASSERT_NO_FATAL_FAILURE(drag_at_random(replayer, dice, what));
     }
     if (!dice.chance(0.2)) continue;
-    replayer.step(edit_of_list(change.backward), "random", ".");
-    ASSERT_EQ(different_pixels(replayer.image().frame, before).size(), 0U) << "undone: " << what;
+    const Change next = random_change(replayer.state().document().look, dice);
+    const Frame there = replayer.image().frame;
+    replayer.step(edit_of_list(next.forward), "random", ".");
+    replayer.step(edit_of_list(next.backward), "random", ".");
+    ASSERT_EQ(different_pixels(replayer.image().frame, there).size(), 0U) << "undone after: " << what;
   }
   EXPECT_GT(steps_that_changed, kSteps / 3);
 }
@@ -271,7 +329,7 @@ TEST_P(RandomJournal, UndoneToTheStartGivesTheFirstFrameBack) {
   std::cout << "RELOOK_SEED=" << seed << "\n";
   set_thread_count(threads);
   Dice dice(seed + 104729 * samples + static_cast<std::uint64_t>(scene));
-  Replayer replayer = replayer_of(scene, {samples, 5, shadow_bits});
+  Replayer replayer = replayer_of(scene, {samples, 5, shadow_bits}, random_regions(dice));
   const Json first_look = replayer.state().document().look;
   std::vector<Frame> frames = {replayer.image().frame};
   std::vector<Change> changes;

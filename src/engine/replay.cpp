@@ -354,25 +354,18 @@ struct Replayer::Impl {
         change.rays.before_index[id.index()] = kNoNode;  // in no tree
       }
       change.any_moved = change.any_shadows = change.any_shadows || !lifted.empty();
-      std::vector<Overlay> shown = std::exchange(overlays, {});
+      const std::vector<Overlay> shown = std::exchange(overlays, {});
       lifted.clear();
       update(change, result, watch);
       for (std::size_t tile = 0; tile < shown.size(); ++tile)
         refresh_pixels(tile, shown[tile].samples, result.changed_pixels);
-      const auto repeated = sorted_repeats(result.changed_pixels);
-      result.changed_pixels.erase(repeated, result.changed_pixels.end());
       finish(result, segments_before);
       return result;
     }
-    remove_selection(change, result, watch);
-    show_selection(result, watch);
+    const std::vector<TileUpdate> removed = remove_selection(change, result, watch);
+    show_selection(removed, result, watch);
     finish(result, segments_before);
     return result;
-  }
-
-  static std::vector<std::uint32_t>::iterator sorted_repeats(std::vector<std::uint32_t>& values) {
-    std::ranges::sort(values);
-    return std::ranges::unique(values).begin();
   }
 
   /// Only objects that are elsewhere now, or gone.
@@ -383,35 +376,36 @@ struct Replayer::Impl {
     });
   }
 
-  /// First step of a drag (paper 2.2): what moves and is still in the ray trees is taken out of them.
-  void remove_selection(StepChange& change, StepResult& result, StopWatch& watch) {
+  /// First step of a drag (paper 2.2): what moves and is still in the ray trees is taken out of them. The frame is not
+  /// brought up to date yet.
+  std::vector<TileUpdate> remove_selection(StepChange& change, StepResult& result, StopWatch& watch) {
     std::vector<ObjectId> all;
     std::ranges::set_union(lifted, selection_of(change), std::back_inserter(all));
-    if (all.size() == lifted.size()) return;
+    if (all.size() == lifted.size()) return {};
     if (overlays.empty()) overlays.resize(image.trees.size());
     for (ObjectId id : lifted) change.rays.objects[id.index()] = 0;  // not in any tree
     lifted = std::move(all);
-    const PassResult done = run(change, lifted, true, result, watch);
+    PassResult done = run(change, lifted, true, result, watch);
     keep_trees(done.updates, change);
     keep_colors(done.updates);
-    for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
-      refresh_pixels(tile, done.updates[tile].shaded, result.changed_pixels);
     watch.lap(result.seconds.update);
+    return std::move(done.updates);
   }
 
-  /// Second step: the selection is rendered where it is; the ray trees stay without it.
-  void show_selection(StepResult& result, StopWatch& watch) {
+  /// Second step: the selection is rendered where it is; the ray trees stay without it. `removed`: what the first step
+  /// has changed.
+  void show_selection(const std::vector<TileUpdate>& removed, StepResult& result, StopWatch& watch) {
+    if (lifted.empty()) return;  // nothing has moved yet
     StepChange change = put_back();
     const PassResult done = run(change, {}, false, result, watch);
     for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
       const TileUpdate& update = done.updates[tile];
-      std::vector<std::uint32_t> shown = std::exchange(overlays[tile].samples, update.shaded);
+      const std::vector<std::uint32_t> shown = std::exchange(overlays[tile].samples, update.shaded);
       overlays[tile].colors = update.colors;
+      if (!removed.empty()) refresh_pixels(tile, removed[tile].shaded, result.changed_pixels);
       refresh_pixels(tile, shown, result.changed_pixels);
       refresh_pixels(tile, update.shaded, result.changed_pixels);
     }
-    const auto repeated = sorted_repeats(result.changed_pixels);
-    result.changed_pixels.erase(repeated, result.changed_pixels.end());
     watch.lap(result.seconds.evaluate);
   }
 

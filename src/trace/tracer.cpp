@@ -52,6 +52,7 @@ struct Query
   const std::vector<Tracer::Placed>* placed = nullptr;
   const Ray* ray = nullptr;
   Meeting nearest;                             // intersect()
+  float slack = 0;                             // intersect()
   std::vector<Crossing>* crossings = nullptr;  // passes(), blockers()
   bool opaque_too = false;                     // blockers()
 };
@@ -65,13 +66,14 @@ void start(Query& query, const std::vector<Tracer::Placed>& placed) {
   query.placed = &placed;
 }
 
+float largest_component(const Imath::V3f& v) {
+  return std::max(std::max(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
+}
+
 /// Candidates up to this much further are still offered, so that equal distances always reach the tie rule: a box is
 /// entered where rounding puts it, which for grazing rays is off by a share of the ray's coordinates, not of t alone.
-float reach(float t, const Ray& ray) {
-  const float coordinates =
-      std::max(std::max(std::fabs(ray.origin.x), std::fabs(ray.origin.y)), std::fabs(ray.origin.z));
-  return t + 1e-4F * t + 0x1p-17F * coordinates;
-}
+float slack_of(const Ray& ray) { return 0x1p-17F * largest_component(ray.origin) / largest_component(ray.direction); }
+float reach(float t, const Query& query) { return t + 1e-4F * t + query.slack; }
 
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
@@ -92,7 +94,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
     return;
   }
   query.nearest = candidate;
-  RTCRayN_tfar(args->ray, 1, 0) = reach(candidate.t, *query.ray);
+  RTCRayN_tfar(args->ray, 1, 0) = reach(candidate.t, query);
 }
 
 void collect_crossings(const RTCFilterFunctionNArguments* args) {
@@ -142,7 +144,7 @@ void look_for_nearest(RTCScene scene, const std::vector<Tracer::Placed>& placed,
   start(query, placed);
   RTCRayHit ray_hit;
   set_ray(ray_hit.ray, *query.ray);
-  ray_hit.ray.tfar = reach(query.nearest.t, *query.ray);
+  ray_hit.ray.tfar = reach(query.nearest.t, query);
   ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 #if RTC_VERSION_MAJOR >= 4
@@ -343,6 +345,7 @@ Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
   const TopLevel::Impl& top = *level.impl_;
   Query query;
   query.ray = &ray;
+  query.slack = slack_of(ray);
   query.nearest.t = ray.t_max;
   query.nearest.key = ~std::uint64_t{0};
   if (top.meets_base()) look_for_nearest(top.base.scene.get(), top.base.placed, query);
