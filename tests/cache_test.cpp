@@ -291,8 +291,7 @@ TEST(Cache, shadow_counters_are_kept_and_checked) {
     CacheContent content = small_content();
     content.shadow_bits = 2;
     const std::uint32_t blocked = content.paths.intern(std::vector<std::uint32_t>{0, 0, 3, 1, 0, 0, counter}).index();
-    for (PathId& path : content.trees[0].paths)
-      if (path == PathId(1)) path = PathId(blocked);  // one hit, either way
+    std::ranges::replace(content.trees[0].paths, PathId(1), PathId(blocked));  // one hit, either way
     return content;
   };
   write_cache(folder / "c", counted_content(4));
@@ -302,9 +301,6 @@ TEST(Cache, shadow_counters_are_kept_and_checked) {
   expect_equal(counted_content(4), read);
   write_cache(folder / "c", counted_content(5));
   EXPECT_EQ(fault_of(folder / "c"), CacheFault::damaged);
-  CacheContent more = counted_content(4);
-  more.shadow_bits = 3;
-  EXPECT_NE(options_hash(more), options_hash(read));
 }
 
 TEST(Cache, indices_out_of_range_are_refused_although_every_hash_fits) {

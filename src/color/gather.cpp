@@ -26,7 +26,7 @@ void from_nodes(const Batch& batch, Column& out, const Read& read) {
 float tint(const TreeBlock& block, const RayNode& node, std::uint32_t light, int channel, const BlockColors& colors) {
   const LightLink& link = block.lights[node.first_light + light];
   float product = 1;
-  for (std::uint32_t f = 0; f < link.filters; ++f) product *= colors.filters[link.first_filter + f][channel];
+  for (std::uint32_t f = 0; f < link.filters; ++f) product *= colors.filters[link.first + f][channel];
   return product;
 }
 

@@ -57,6 +57,15 @@ void store_trees(TileTrees& trees, const TileUpdate& update, const std::vector<P
   trees = std::move(next);
 }
 
+/// The tiles with anything to do, most work first, so that threads end together.
+std::vector<std::size_t> by_work(const std::vector<TileWork>& works) {
+  std::vector<std::size_t> tiles;
+  for (std::size_t tile = 0; tile < works.size(); ++tile)
+    if (works[tile].leaves.any()) tiles.push_back(tile);
+  std::ranges::stable_sort(tiles, std::greater(), [&](std::size_t tile) { return works[tile].leaves.count(); });
+  return tiles;
+}
+
 }  // namespace
 
 struct Replayer::Impl {
@@ -161,8 +170,9 @@ struct Replayer::Impl {
     parallel_for(image.trees.size(), [&](std::size_t tile) { done.works[tile] = find_tile_work(pass, tile); });
     watch.lap(result.seconds.test);
     Pool<Shader> shaders;
-    parallel_for(image.trees.size(), [&](std::size_t tile) {
-      done.updates[tile] = update_tile(pass, tile, done.works[tile], shaders);
+    const std::vector<std::size_t> tiles = by_work(done.works);
+    parallel_for(tiles.size(), [&](std::size_t i) {
+      done.updates[tiles[i]] = update_tile(pass, tiles[i], done.works[tiles[i]], shaders);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
     count(done, result);

@@ -31,24 +31,25 @@ class TileUpdater {
         if (!work.leaves.test(leaf)) continue;
         const std::uint32_t x0 = column * kLeafSize, x1 = std::min(x0 + kLeafSize, width);
         for (std::uint32_t sample = (y * width + x0) * samples; sample < (y * width + x1) * samples; ++sample)
-          update_sample(sample, by_leaf_[leaf]);
+          update_sample(sample, leaf);
       }
     flush();
     return std::move(result_);
   }
 
  private:
-  void update_sample(std::uint32_t sample, const LeafTouches* leaf) {
+  void update_sample(std::uint32_t sample, std::uint32_t leaf) {
     static const Touches kNoTouches;
     const PathId path = trees_.paths[sample];
     const std::uint8_t task = p_.tasks.of_path[path.index()];
-    const Touches* touches = leaf != nullptr ? leaf->of(p_.classes.of(path)) : nullptr;
+    const Touches* touches = by_leaf_[leaf] != nullptr ? by_leaf_[leaf]->of(p_.classes.of(path)) : nullptr;
     const bool tests_all = p_.change.rays.lights_changed || (p_.tunnel_test == nullptr && p_.change.touches_segments());
     if (task == 0 && touches == nullptr && !tests_all) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}), trees_.hits_of(sample).data()};
     bool update = (task & kUpdateTree) != 0 || tests_all;
-    if (!update && touches != nullptr) update = probe(*touches, primary, stored);
+    // Where the last tree has changed, this one probably has, too: no use in asking first.
+    if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(*touches, primary, stored);
     if (!update && (task & kShade) == 0) return;
     const TreeBlock::Mark mark = block_.mark();
     bool changed = false;
@@ -56,6 +57,7 @@ class TileUpdater {
     if (update) {
       const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &kNoTouches;
       root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
+      last_changed_.set(leaf, changed);
     } else {
       root = expand_tree(p_.grow, primary, sample, stored, block_);
     }
@@ -100,6 +102,7 @@ class TileUpdater {
   PrimaryRays primaries_;
   Shader& shader_;
   std::array<const LeafTouches*, kLeaves> by_leaf_{};
+  Leaves last_changed_;  // leaves whose last updated tree has changed
   TreeBlock block_;
   std::vector<std::uint32_t> roots_, words_;
   TileUpdate result_;

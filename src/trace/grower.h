@@ -2,6 +2,7 @@
 // whole scene, and walking stored trees.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -60,18 +61,15 @@ class Grower {
                    std::span<const FilterNode> filters) {
     LightLink& link = b_.lights[b_.nodes[index].first_light + light];
     link.state = filters.empty() ? ShadowState::open : ShadowState::filtered;
-    link.first_filter = static_cast<std::uint32_t>(b_.filters.size());
+    link.first = static_cast<std::uint32_t>(b_.filters.size());
     link.filters = static_cast<std::uint32_t>(filters.size());
     b_.filters.insert(b_.filters.end(), filters.begin(), filters.end());
-    complete_filters(g_.scene, b_.nodes[index], segment, b_.filters.data() + link.first_filter, filters.size());
+    complete_filters(g_.scene, b_.nodes[index], segment, b_.filters.data() + link.first, filters.size());
   }
 
   /// `entry`: as in paths.
   void set_blocked(std::uint32_t index, std::size_t light, std::span<const std::uint32_t> entry) {
-    LightLink& link = b_.lights[b_.nodes[index].first_light + light];
-    link.state = ShadowState::blocked;
-    link.first_blocker_word = static_cast<std::uint32_t>(b_.blocker_words.size());
-    b_.blocker_words.insert(b_.blocker_words.end(), entry.begin(), entry.end());
+    std::ranges::copy(entry, append_entry(index, light, entry.size()).begin());
   }
 
   /// The segment to a light, if light is gathered here at all.
@@ -89,8 +87,7 @@ class Grower {
     if (g_.shadow_bits > 0) {
       Tracer::blockers(*g_.level, ray, crossings_);
       if (std::ranges::any_of(crossings_, [&](const Crossing& c) { return !passes_light(c); })) {
-        count_blockers();
-        set_blocked(index, light, entry_);
+        count_blockers(index, light);
         return;
       }
     } else if (!Tracer::passes(*g_.level, ray, crossings_)) {
@@ -140,34 +137,42 @@ class Grower {
     return g_.scene.object(crossing.object).optics.passes_light;
   }
 
-  /// The entry of a blocked light from the crossings of its segment (paper 4.2).
-  void count_blockers() {
-    entry_.assign(1, 0);
-    interval_counters_.clear();
-    distinct_.clear();
+  /// Makes a light blocked, with an entry of `size` words to be filled.
+  std::span<std::uint32_t> append_entry(std::uint32_t index, std::size_t light, std::size_t size) {
+    LightLink& link = b_.lights[b_.nodes[index].first_light + light];
+    link.state = ShadowState::blocked;
+    link.first = static_cast<std::uint32_t>(b_.blocker_words.size());
+    b_.blocker_words.resize(b_.blocker_words.size() + size);
+    return std::span(b_.blocker_words).subspan(link.first);
+  }
+
+  /// A light that opaque objects block, from all crossings of its segment (paper 4.2).
+  void count_blockers(std::uint32_t index, std::size_t light) {
+    const auto is_transparent = [&](const Crossing& crossing) { return passes_light(crossing); };
+    const auto surfaces = static_cast<std::size_t>(std::ranges::count_if(crossings_, is_transparent));
+    const std::span<std::uint32_t> entry = append_entry(index, light, entry_size(surfaces, ShadowState::blocked));
+    entry[0] = static_cast<std::uint32_t>(surfaces);
+    std::array<ObjectId, ShadowCounter::most(ShadowCounter::kMostBits) + 1> distinct;  // of an interval
+    std::size_t blockers = 0, interval = 0;
     const auto end_interval = [&] {
-      interval_counters_.push_back(ShadowCounter::of(distinct_.size(), g_.shadow_bits).word());
-      distinct_.clear();
+      entry[1 + surfaces + interval++] = ShadowCounter::of(blockers, g_.shadow_bits).word();
+      blockers = 0;
     };
     for (const Crossing& crossing : crossings_) {
       if (passes_light(crossing)) {
+        entry[1 + interval] = crossing.object.index();
         end_interval();
-        ++entry_[0];
-        entry_.push_back(crossing.object.index());
-      } else if (distinct_.size() <= ShadowCounter::most(g_.shadow_bits) &&
-                 std::ranges::find(distinct_, crossing.object) == distinct_.end()) {
-        distinct_.push_back(crossing.object);
+      } else if (blockers < distinct.size() &&
+                 std::ranges::count(std::span(distinct).first(blockers), crossing.object) == 0) {
+        distinct[blockers++] = crossing.object;
       }
     }
     end_interval();
-    entry_.insert(entry_.end(), interval_counters_.begin(), interval_counters_.end());
   }
 
   const GrowScene& g_;
   std::uint32_t sample_;
   TreeBlock& b_;
-  std::vector<std::uint32_t> entry_, interval_counters_;
-  std::vector<ObjectId> distinct_;  // opaque objects of an interval, as many as matter
 };
 
 /// Reads the filters of a stored node, light by light. `hits`: the first after the node's own.

@@ -158,7 +158,7 @@ void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSe
 }
 
 std::span<const std::uint32_t> TreeBlock::blocker_entry(const LightLink& link) const {
-  const std::uint32_t* entry = blocker_words.data() + link.first_blocker_word;
+  const std::uint32_t* entry = blocker_words.data() + link.first;
   return {entry, entry_size(entry[0], ShadowState::blocked)};
 }
 
@@ -191,7 +191,7 @@ void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, 
       }
       words.push_back(link.filters);
       for (std::uint32_t f = 0; f < link.filters; ++f) {
-        const FilterNode& filter = block.filters[link.first_filter + f];
+        const FilterNode& filter = block.filters[link.first + f];
         words.push_back(filter.object.index());
         hits.push_back(filter.hit);
       }

@@ -46,8 +46,8 @@ struct RayNode {
 /// What stands between a node and one light.
 struct LightLink {
   ShadowState state = ShadowState::facing_away;
-  std::uint32_t first_filter = 0, filters = 0;  // filtered: a range of TreeBlock::filters
-  std::uint32_t first_blocker_word = 0;         // blocked and counted: its entry in TreeBlock::blocker_words
+  std::uint32_t first = 0;    // filtered: into TreeBlock::filters; blocked and counted: into TreeBlock::blocker_words
+  std::uint32_t filters = 0;  // how many, of a filtered light
 };
 
 /// A transparent surface on a shadow segment.
