@@ -69,7 +69,8 @@ void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer,
   const auto write = [&](const char* kind, const auto& draw) {
     Frame frame = replayer.image().frame;
     for (std::size_t tile = 0; tile < tile_count(frame.width, frame.height); ++tile) draw(frame, tile);
-    write_file(path_ / "overlays" / (std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png"), encode_png(frame));
+    write_file(path_ / "overlays" / (std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png"),
+               encode_png(frame));
   };
   if (!result.dependent.empty()) {
     write("dependent", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.dependent[tile]); });

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/hash.h"
 #include "base/json.h"
 #include "engine/compare.h"
 #include "run_program.h"
@@ -207,10 +208,10 @@ TEST_F(Cli, structure_options_are_recorded_and_change_no_frame) {
 
 TEST_F(Cli, shadow_bits_are_fixed_by_preprocess) {
   ASSERT_EQ(preprocess("c").exit_code, 0);
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("counted"), "--resolution", "72x40", "--quiet", "--shadow-bits",
-                    "2"})
-                .exit_code,
-            0);
+  ASSERT_EQ(
+      relook({"preprocess", kScene, "-o", at("counted"), "--resolution", "72x40", "--quiet", "--shadow-bits", "2"})
+          .exit_code,
+      0);
   write_text(at("j.json"), kJournal);
   const auto replay = [&](const std::string& cache, std::vector<std::string> flags) {
     flags.insert(flags.begin(), {"replay", at(cache), at("j.json"), "-o", at("run-" + cache), "--quiet"});
@@ -246,6 +247,29 @@ TEST_F(Cli, a_cache_that_does_not_fit_is_refused_with_its_own_code_and_sentence)
   expect_error(relook({"check", at("c"), "--quiet"}), 5, "cut short");
   std::filesystem::resize_file(look, size);
   expect_error(replay(), 5, "damaged");
+}
+
+TEST_F(Cli, a_cache_of_another_build_is_refused) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  const std::string manifest = at("c") + "/MANIFEST.json";
+  Json document = read_json(manifest);
+  document["content"]["build"] = "0123456789abcdef-avx2";
+  document["hash"] = hash128(bytes_of(document["content"].dump()));
+  write_text(manifest, document.dump(1) + "\n");
+  write_text(at("j.json"), kJournal);
+  expect_error(relook({"replay", at("c"), at("j.json"), "-o", at("r")}), 3, "another build");
+  EXPECT_FALSE(std::filesystem::exists(at("r")));
+}
+
+TEST_F(Cli, overlays_are_written_on_request) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("plain"), "--quiet"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(at("plain/overlays")));
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("r"), "--overlays", "--quiet"}).exit_code, 0);
+  for (const char* name :
+       {"0000_groups", "0001_dependent", "0001_touched", "0001_groups", "0002_01_touched", "0002_touched"})
+    EXPECT_TRUE(std::filesystem::exists(at("r/overlays/") + name + ".png")) << name;
 }
 
 TEST_F(Cli, preprocess_writes_to_a_bare_name_in_the_working_folder) {

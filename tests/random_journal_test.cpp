@@ -242,7 +242,8 @@ RegionOptions random_regions(Dice& dice) {
 
 void expect_full_render(const Replayer& replayer, const std::string& what) {
   const SceneState again = compiled_again(replayer.state());
-  ASSERT_EQ(different_pixels(replayer.image().frame, rendered(again.scene(), replayer.image().view)).size(), 0U) << what;
+  ASSERT_EQ(different_pixels(replayer.image().frame, rendered(again.scene(), replayer.image().view)).size(), 0U)
+      << what;
 }
 
 void expect_fresh_structures(const Replayer& replayer, const std::string& what) {

@@ -9,8 +9,8 @@ namespace {
 PathClasses classes_of(const Replayer& replayer) {
   const std::uint32_t atoms = replayer.regions().options().atoms;
   PathClasses classes;
-  classes.extend(replayer.image().paths, layout_of(replayer), atoms > 0 ? atoms_of(replayer.state(), atoms)
-                                                                        : std::vector<ObjectId>());
+  classes.extend(replayer.image().paths, layout_of(replayer),
+                 atoms > 0 ? atoms_of(replayer.state(), atoms) : std::vector<ObjectId>());
   return classes;
 }
 
@@ -70,7 +70,8 @@ class TreeCheck {
     if ((lights & light_bit(light)) == 0) return false;
     const Box to = end.directional ? extruded(own->points, end.end, 50).to : end.end;
     for (const float t : {0.0F, 0.4F, 1.0F})
-      if (!is_inside(own->points, to, segment.origin + segment.direction * (end.directional ? 50 * t : t))) return false;
+      if (!is_inside(own->points, to, segment.origin + segment.direction * (end.directional ? 50 * t : t)))
+        return false;
     return true;
   }
 

@@ -139,7 +139,8 @@ TEST(Finding, TunnelsLeaveFewTests) {
     structures.tunnels = tunnels;
     Replayer replayer = replayer_of(TestScene::spheres, {1, 6}, structures);
     const StepResult step = replayer.step(
-        parsed_edit(R"([{"op": "replace", "path": "/nodes/Ball/translation", "value": [0.1, 0.9, 0.1]}])"), "ball", ".");
+        parsed_edit(R"([{"op": "replace", "path": "/nodes/Ball/translation", "value": [0.1, 0.9, 0.1]}])"), "ball",
+        ".");
     tests[tunnels] = step.counters.ray_tests;
   }
   EXPECT_GT(tests[1], 0U);

@@ -42,7 +42,9 @@ bool is_clear_of_bounds(const Shaft& shaft, const Box& box) {
   return !around.intersects(box);
 }
 
-double bound(const Box& box, int axis, bool upper) { return static_cast<double>(upper ? box.max[axis] : box.min[axis]); }
+double bound(const Box& box, int axis, bool upper) {
+  return static_cast<double>(upper ? box.max[axis] : box.min[axis]);
+}
 
 /// The plane along the third axis through the corners (i_upper, j_upper) of both boxes' rectangles, if each box holds
 /// one of the two faces that meet there: does it have all of `box` outside?

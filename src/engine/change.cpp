@@ -169,7 +169,8 @@ ChangeBoxes boxes_of(const StepChange& change, const RayScene& ray_scene, std::s
   std::vector<Box> moved, before, after;
   for (ObjectId id : selection_of(change)) {
     const RayObject& now = ray_scene.object(id);
-    const bool is_moved = (rays.flags(id) & RayChange::moved) != 0, shadows = (rays.flags(id) & RayChange::shadows) != 0;
+    const bool is_moved = (rays.flags(id) & RayChange::moved) != 0,
+               shadows = (rays.flags(id) & RayChange::shadows) != 0;
     const bool is_there = now.alive && !std::ranges::binary_search(absent, id);
     if (is_there && is_moved) moved.push_back(world_bounds(now));
     if (is_there && shadows) after.push_back(world_bounds(now));

@@ -54,9 +54,8 @@ void draw_regions(Frame& frame, std::size_t tile, const Leaves& leaves) {
 }
 
 void draw_groups(Frame& frame, std::size_t tile, const PathGroups& groups) {
-  outline_largest(frame, tile, [&](std::uint32_t region) {
-    return groups.is_group(region) && groups.classes(region).size() <= 1;
-  });
+  outline_largest(frame, tile,
+                  [&](std::uint32_t region) { return groups.is_group(region) && groups.classes(region).size() <= 1; });
 }
 
 }  // namespace relook

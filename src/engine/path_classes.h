@@ -1,5 +1,5 @@
-// Atoms (paper 3.2): paths that differ only in which part of an atom they meet count as the same for groups and tunnels,
-// so that these are fewer. Everything below stays exact: samples are told apart by their own paths.
+// Atoms (paper 3.2): paths that differ only in which part of an atom they meet count as the same for groups and
+// tunnels, so that these are fewer. Everything below stays exact: samples are told apart by their own paths.
 #pragma once
 #include <vector>
 

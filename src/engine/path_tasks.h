@@ -25,9 +25,9 @@ struct PathTasks {
 
 /// The image side of a search.
 struct PathSearch {
-  const RayScene& rays;             // after the change
+  const RayScene& rays;  // after the change
   const PathTable& paths;
-  const PathIndex& index;           // of `paths`
+  const PathIndex& index;              // of `paths`
   const std::vector<LightId>& lights;  // light order of the paths
   std::uint32_t shadow_bits;           // of the paths
   const PathClasses& classes;

@@ -32,8 +32,7 @@ class LeafTunnels {
   void add(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
     block_.clear();
-    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()),
-                            trees_.hits_of(sample).data()};
+    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()), trees_.hits_of(sample).data()};
     const std::uint32_t root = expand_tree(grow_, primaries_.ray(rect_, sample), sample, stored, block_);
     enclose(set_.of(class_of_(path)), grow_.scene, block_, root, histories_);
   }
@@ -53,8 +52,7 @@ Leaves all_leaves() { return Leaves().set(); }
 
 }  // namespace
 
-PathGroups ImageRegions::groups_of(const Image& image, std::size_t tile,
-                                   const ClassOf& class_of) const {
+PathGroups ImageRegions::groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const {
   const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
   return {image.trees[tile], rect.x1 - rect.x0, image.view.samples, options_.groups, class_of};
 }
@@ -80,7 +78,8 @@ void ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t
   if (has_groups()) groups_[tile] = groups_of(image, tile, class_of);
   if (!has_tunnels()) return;
   LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of);
-  tunnels_[tile] = tunnels_[tile].rebuilt(changed, options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
+  tunnels_[tile] =
+      tunnels_[tile].rebuilt(changed, options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
 }
 
 std::size_t ImageRegions::group_bytes() const {

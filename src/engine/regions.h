@@ -41,8 +41,7 @@ class ImageRegions {
   [[nodiscard]] std::size_t tunnel_bytes() const;
 
  private:
-  [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile,
-                                     const ClassOf& class_of) const;
+  [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const;
   RegionOptions options_;
   std::vector<PathGroups> groups_;
   std::vector<TileTunnels> tunnels_;

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "engine/sampling.h"
 #include "engine/scene_level.h"
-#include "engine/tile_update.h"
+#include "engine/stored_image.h"
 
 namespace relook {
 namespace {
@@ -28,35 +26,6 @@ class StopWatch {
   Clock::time_point last_ = Clock::now();
 };
 
-bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
-
-/// Colours of single samples in place of the stored ones: those of an intermediate frame of a drag.
-struct Overlay {
-  std::vector<std::uint32_t> samples;  // increasing
-  std::vector<Rgba> colors;
-};
-
-/// Puts the new trees of a tile in place of the old ones. `ids`: of the update's paths in the image's table.
-void store_trees(TileTrees& trees, const TileUpdate& update, const std::vector<PathId>& ids) {
-  TileTrees next;
-  next.paths = std::move(trees.paths);
-  next.first_hit.reserve(trees.first_hit.size());
-  next.first_hit.push_back(0);
-  next.hits.reserve(trees.hits.size());
-  std::size_t k = 0;
-  for (std::uint32_t sample = 0; sample < next.paths.size(); ++sample) {
-    std::span<const Hit> hits = trees.hits_of(sample);
-    if (k < update.packed.size() && update.packed[k] == sample) {
-      next.paths[sample] = ids[update.packed_paths[k].index()];
-      hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
-      ++k;
-    }
-    next.hits.insert(next.hits.end(), hits.begin(), hits.end());
-    next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
-  }
-  trees = std::move(next);
-}
-
 /// The tiles with anything to do, most work first, so that threads end together.
 std::vector<std::size_t> by_work(const std::vector<TileWork>& works) {
   std::vector<std::size_t> tiles;
@@ -70,16 +39,8 @@ std::vector<std::size_t> by_work(const std::vector<TileWork>& works) {
 
 struct Replayer::Impl {
   SceneState state;
-  Image image;
   RayScene rays;
-  std::vector<LightId> lights;  // light order of the stored paths
-  PathIndex index;
-  PathClasses classes;
-  std::vector<ObjectId> atoms;  // see atoms_of(); empty without atoms
-  ImageRegions regions;
-  std::vector<std::uint64_t> tile_segments;
-  std::uint64_t segments = 0, samples_total = 0;
-  std::size_t compact_paths;  // size of the path table when it last held no unused paths
+  StoredImage stored;
   ProgramTable programs;
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
@@ -87,39 +48,15 @@ struct Replayer::Impl {
 
   Impl(SceneState s, Image i, const RegionOptions& options)
       : state(std::move(s)),
-        image(std::move(i)),
         rays(state.scene()),
-        lights(state.scene().light_order),
-        regions(options),
-        compact_paths(image.paths.size()) {
-    if (regions.options().atoms > 0) atoms = atoms_of(state, regions.options().atoms);
-    for (const TileTrees& tile : image.trees) samples_total += tile.paths.size();
-    index_paths();
-    count_segments();
-    regions.build_groups(image, class_of());
-  }
+        stored(std::move(i), state.scene().light_order, atoms(options.atoms), options) {}
 
-  /// Of the stored paths.
-  [[nodiscard]] PathLayout layout() const { return {lights.size(), image.view.shadow_bits}; }
-  [[nodiscard]] ClassOf class_of() const {
-    return [this](PathId path) { return classes.of(path); };
+  [[nodiscard]] const Image& image() const { return stored.image(); }
+  [[nodiscard]] std::vector<ObjectId> atoms(std::uint32_t depth) const {
+    return depth > 0 ? atoms_of(state, depth) : std::vector<ObjectId>();
   }
   [[nodiscard]] GrowScene grow(const Tracer::TopLevel* scene_level) const {
-    return {rays, scene_level, image.view.max_depth, image.view.shadow_bits};
-  }
-
-  void index_paths() {
-    index.extend(image.paths, layout());
-    classes.extend(image.paths, layout(), atoms);
-  }
-
-  void count_segments() {
-    tile_segments.assign(image.trees.size(), 0);
-    parallel_for(image.trees.size(), [&](std::size_t tile) {
-      for (PathId path : image.trees[tile].paths) tile_segments[tile] += index.segments(path);
-    });
-    segments = 0;
-    for (std::uint64_t count : tile_segments) segments += count;
+    return {rays, scene_level, image().view.max_depth, image().view.shadow_bits};
   }
 
   void forget_programs(const StepChange& change) {
@@ -131,8 +68,6 @@ struct Replayer::Impl {
     if (change.colors.environment) programs.forget_environment();
   }
 
-  // ---- one pass over the image
-
   /// What one pass did, for the report.
   struct PassResult {
     std::vector<TileUpdate> updates;  // by tile
@@ -143,11 +78,12 @@ struct Replayer::Impl {
   PassResult run(StepChange& change, std::span<const ObjectId> absent, bool keeps_trees, StepResult& result,
                  StopWatch& watch) {
     const PathTasks tasks = find_path_tasks(
-        {rays, image.paths, index, lights, image.view.shadow_bits, classes}, change, programs);
+        {rays, image().paths, stored.index(), stored.lights(), image().view.shadow_bits, stored.classes()}, change,
+        programs);
     watch.lap(result.seconds.select);
     const Tracer::TopLevel* scene_level = nullptr;
     if (change.touches_rays()) {
-      if (!level) level = std::make_unique<SceneLevel>(image.view.shadow_bits > 0);
+      if (!level) level = std::make_unique<SceneLevel>(image().view.shadow_bits > 0);
       scene_level = &level->current(rays, absent);
       build_selection(change, rays, absent, level->tracer());
     }
@@ -155,19 +91,26 @@ struct Replayer::Impl {
     ChangeBoxes boxes;
     const std::vector<LightEnd> ends = light_ends(state.scene());
     const bool uses_tunnels =
-        regions.options().tunnels > 0 && change.touches_segments() && !change.rays.lights_changed;
+        stored.regions().options().tunnels > 0 && change.touches_segments() && !change.rays.lights_changed;
     if (uses_tunnels) {
       boxes = boxes_of(change, rays, absent);
-      boxes.count_blockers = image.view.shadow_bits > 0;
+      boxes.count_blockers = image().view.shadow_bits > 0;
     }
     const TunnelTest tunnel_test{boxes, ends};
-    const UpdatePass pass{image,   lights,  scene,    change,
-                          tasks,   classes, regions,  uses_tunnels ? &tunnel_test : nullptr,
-                          programs, keeps_trees};
+    const UpdatePass pass{image(),
+                          stored.lights(),
+                          scene,
+                          change,
+                          tasks,
+                          stored.classes(),
+                          stored.regions(),
+                          uses_tunnels ? &tunnel_test : nullptr,
+                          programs,
+                          keeps_trees};
     PassResult done;
-    done.updates.resize(image.trees.size());
-    done.works.resize(image.trees.size());
-    parallel_for(image.trees.size(), [&](std::size_t tile) { done.works[tile] = find_tile_work(pass, tile); });
+    done.updates.resize(image().trees.size());
+    done.works.resize(image().trees.size());
+    parallel_for(image().trees.size(), [&](std::size_t tile) { done.works[tile] = find_tile_work(pass, tile); });
     watch.lap(result.seconds.test);
     Pool<Shader> shaders;
     const std::vector<std::size_t> tiles = by_work(done.works);
@@ -197,111 +140,20 @@ struct Replayer::Impl {
     }
   }
 
-  // ---- keeping what a pass found
-
-  /// Stores new trees and keeps the regions equal to what would be built from them.
-  void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
-    if (!change.touches_rays()) return;
-    // Another light order means another form of every path: all samples have been packed anew.
-    const bool is_new_table = change.rays.lights_changed;
-    if (is_new_table) {
-      image.paths = PathTable();
-      index.clear();
-      classes.clear();
-    }
-    lights = state.scene().light_order;
-    std::vector<std::vector<PathId>> ids(updates.size());
-    for (std::size_t tile = 0; tile < updates.size(); ++tile)
-      for (std::uint32_t i = 0; i < updates[tile].paths.size(); ++i)
-        ids[tile].push_back(image.paths.intern(updates[tile].paths.words(PathId(i))));
-    index_paths();
-    const GrowScene scene = grow(nullptr);
-    parallel_for(updates.size(), [&](std::size_t tile) {
-      if (updates[tile].packed.empty()) return;
-      store_trees(image.trees[tile], updates[tile], ids[tile]);
-      tile_segments[tile] = 0;
-      for (PathId path : image.trees[tile].paths) tile_segments[tile] += index.segments(path);
-      regions.update(image, scene, tile, leaves_of(tile, updates[tile].packed), class_of());
-    });
-    segments = 0;
-    for (std::uint64_t count : tile_segments) segments += count;
-    if (image.paths.size() > 4 * compact_paths + 4096) drop_unused_paths();
-  }
-
-  [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
-    const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-    Leaves leaves;
-    for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image.view.samples, rect.x1 - rect.x0));
-    return leaves;
-  }
-
-  /// Numbers the paths in use afresh, in the order of tiles and samples.
-  void drop_unused_paths() {
-    PathTable used;
-    std::vector<PathId> ids(image.paths.size(), PathId::none());
-    for (TileTrees& tile : image.trees)
-      for (PathId& path : tile.paths) {
-        PathId& id = ids[path.index()];
-        if (id.is_none()) id = used.intern(image.paths.words(path));
-        path = id;
-      }
-    image.paths = std::move(used);
-    compact_paths = image.paths.size();
-    index.clear();
-    classes.clear();
-    index_paths();
-    regions.build_groups(image, class_of());
-    if (regions.has_tunnels() && regions.options().tunnels > 1) regions.build_tunnels(image, grow(nullptr), class_of());
-  }
-
-  void keep_colors(const std::vector<TileUpdate>& updates) {
-    for (std::size_t tile = 0; tile < updates.size(); ++tile)
-      for (std::size_t k = 0; k < updates[tile].shaded.size(); ++k)
-        image.sample_colors[tile][updates[tile].shaded[k]] = updates[tile].colors[k];
-  }
-
-  /// Works the pixels of some samples out again and notes those that differ.
-  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples,
-                      std::vector<std::uint32_t>& changed_pixels) {
-    const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-    const std::vector<Rgba>& stored = image.sample_colors[tile];
-    const Overlay* overlay = overlays.empty() ? nullptr : &overlays[tile];
-    std::vector<Rgba> colors(image.view.samples);
-    std::uint32_t last_pixel = kNoNode;
-    for (std::uint32_t sample : samples) {
-      const std::uint32_t pixel = sample / image.view.samples;
-      if (pixel == last_pixel) continue;
-      last_pixel = pixel;
-      const std::uint32_t first = pixel * image.view.samples;
-      std::copy_n(stored.begin() + first, image.view.samples, colors.begin());
-      if (overlay != nullptr) {
-        auto at = std::ranges::lower_bound(overlay->samples, first) - overlay->samples.begin();
-        for (; at < std::ssize(overlay->samples) && overlay->samples[static_cast<std::size_t>(at)] < first + colors.size(); ++at)
-          colors[overlay->samples[static_cast<std::size_t>(at)] - first] = overlay->colors[static_cast<std::size_t>(at)];
-      }
-      const std::size_t place = frame_index(rect, pixel, image.frame.width);
-      const Rgba color = pixel_color(colors.data(), image.view.samples);
-      if (same_bits(color, image.frame.pixels[place])) continue;
-      image.frame.pixels[place] = color;
-      changed_pixels.push_back(static_cast<std::uint32_t>(place));
-    }
-  }
-
-  // ---- steps
-
   /// Applies the edit to the scene and finds what it means.
   StepChange begin(const Edit& edit, std::string_view file, const std::filesystem::path& folder, StepResult& result) {
+    const std::size_t objects_before = state.scene().objects.size();
     const SceneDelta delta = apply_edit(state, edit, file, folder);
     result.classification = classify(state.scene(), delta);
     // Tunnels hold for the scene in which the trees were made; they are built when a change first needs them.
-    StepChange change = find_change(rays, state.scene(), delta, lights);
-    if (change.touches_segments() && !change.rays.lights_changed && !regions.has_tunnels())
-      regions.build_tunnels(image, grow(nullptr), class_of());
+    StepChange change = find_change(rays, state.scene(), delta, stored.lights());
+    if (change.touches_segments() && !change.rays.lights_changed && !stored.regions().has_tunnels())
+      stored.build_tunnels(grow(nullptr));
     rays.update(state.scene(), delta);
-    if (regions.options().atoms > 0 && atoms.size() != state.scene().objects.size()) atoms = atoms_of(state, regions.options().atoms);
+    if (state.scene().objects.size() != objects_before) stored.set_atoms(atoms(stored.regions().options().atoms));
     if (level) level->note_changed(selection_of(change));
     forget_programs(change);
-    result.counters.samples_total = samples_total;
+    result.counters.samples_total = stored.samples();
     return change;
   }
 
@@ -315,16 +167,23 @@ struct Replayer::Impl {
     return result;
   }
 
+  void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
+    if (change.touches_rays()) stored.keep_trees(updates, grow(nullptr), change.rays.lights_changed);
+  }
+  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, StepResult& result) {
+    stored.refresh_pixels(tile, samples, overlays.empty() ? nullptr : &overlays[tile], result.changed_pixels);
+  }
+
   /// Brings trees, colours and frame up to date with the scene.
   void update(StepChange& change, StepResult& result, StopWatch& watch) {
-    const std::uint64_t segments_before = segments;
+    const std::uint64_t segments_before = stored.segments();
     if (change.touches_rays() || !change.colors.empty()) {
       const PassResult done = run(change, {}, true, result, watch);
       keep_trees(done.updates, change);
       watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-      keep_colors(done.updates);
+      stored.keep_colors(done.updates);
       for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
-        refresh_pixels(tile, done.updates[tile].shaded, result.changed_pixels);
+        refresh_pixels(tile, done.updates[tile].shaded, result);
       watch.lap(result.seconds.evaluate);
     }
     finish(result, segments_before);
@@ -345,8 +204,8 @@ struct Replayer::Impl {
     r.objects.assign(state.scene().objects.size(), 0);
     r.before_index.assign(state.scene().objects.size(), kNoNode);
     for (ObjectId id : lifted) r.objects[id.index()] = RayChange::moved | RayChange::shadows;
-    r.old_lights = lights;
-    for (std::uint32_t i = 0; i < lights.size(); ++i) r.old_light_index.push_back(i);
+    r.old_lights = stored.lights();
+    for (std::uint32_t i = 0; i < stored.lights().size(); ++i) r.old_light_index.push_back(i);
     change.any_moved = change.any_shadows = !lifted.empty();
     return change;
   }
@@ -356,7 +215,7 @@ struct Replayer::Impl {
     StopWatch watch;
     StepChange change = begin(edit, file, folder, result);
     watch.lap(result.seconds.classify);
-    const std::uint64_t segments_before = segments;
+    const std::uint64_t segments_before = stored.segments();
     if (!is_movement(change)) {
       // Lights move with the selection, say: not the paper's kind of drag. All that is lifted goes back, too.
       for (ObjectId id : lifted) {
@@ -367,8 +226,7 @@ struct Replayer::Impl {
       const std::vector<Overlay> shown = std::exchange(overlays, {});
       lifted.clear();
       update(change, result, watch);
-      for (std::size_t tile = 0; tile < shown.size(); ++tile)
-        refresh_pixels(tile, shown[tile].samples, result.changed_pixels);
+      for (std::size_t tile = 0; tile < shown.size(); ++tile) refresh_pixels(tile, shown[tile].samples, result);
       finish(result, segments_before);
       return result;
     }
@@ -392,12 +250,12 @@ struct Replayer::Impl {
     std::vector<ObjectId> all;
     std::ranges::set_union(lifted, selection_of(change), std::back_inserter(all));
     if (all.size() == lifted.size()) return {};
-    if (overlays.empty()) overlays.resize(image.trees.size());
+    if (overlays.empty()) overlays.resize(image().trees.size());
     for (ObjectId id : lifted) change.rays.objects[id.index()] = 0;  // not in any tree
     lifted = std::move(all);
     PassResult done = run(change, lifted, true, result, watch);
     keep_trees(done.updates, change);
-    keep_colors(done.updates);
+    stored.keep_colors(done.updates);
     watch.lap(result.seconds.update);
     return std::move(done.updates);
   }
@@ -412,9 +270,9 @@ struct Replayer::Impl {
       const TileUpdate& update = done.updates[tile];
       const std::vector<std::uint32_t> shown = std::exchange(overlays[tile].samples, update.shaded);
       overlays[tile].colors = update.colors;
-      if (!removed.empty()) refresh_pixels(tile, removed[tile].shaded, result.changed_pixels);
-      refresh_pixels(tile, shown, result.changed_pixels);
-      refresh_pixels(tile, update.shaded, result.changed_pixels);
+      if (!removed.empty()) refresh_pixels(tile, removed[tile].shaded, result);
+      refresh_pixels(tile, shown, result);
+      refresh_pixels(tile, update.shaded, result);
     }
     watch.lap(result.seconds.evaluate);
   }
@@ -423,7 +281,7 @@ struct Replayer::Impl {
   StepResult release() {
     StepResult result;
     StopWatch watch;
-    result.counters.samples_total = samples_total;
+    result.counters.samples_total = stored.samples();
     if (lifted.empty()) return result;
     StepChange change = put_back();
     lifted.clear();
@@ -439,22 +297,22 @@ Replayer::~Replayer() = default;
 Replayer::Replayer(Replayer&&) noexcept = default;
 
 const SceneState& Replayer::state() const { return impl_->state; }
-const Image& Replayer::image() const { return impl_->image; }
-const ImageRegions& Replayer::regions() const { return impl_->regions; }
-std::uint64_t Replayer::segments() const { return impl_->segments; }
+const Image& Replayer::image() const { return impl_->image(); }
+const ImageRegions& Replayer::regions() const { return impl_->stored.regions(); }
+std::uint64_t Replayer::segments() const { return impl_->stored.segments(); }
 
 Resident Replayer::resident() const {
   Resident resident;
-  resident.ray_paths = impl_->image.paths.bytes() + impl_->index.bytes();
-  for (const TileTrees& tile : impl_->image.trees) {
+  resident.ray_paths = impl_->image().paths.bytes() + impl_->stored.index().bytes();
+  for (const TileTrees& tile : impl_->image().trees) {
     resident.ray_paths += tile.paths.size() * sizeof(PathId);
     resident.ray_trees += tile.first_hit.size() * sizeof(std::uint32_t) + tile.hits.size() * sizeof(Hit);
   }
-  resident.tunnels = impl_->regions.group_bytes() + impl_->regions.tunnel_bytes();
+  resident.tunnels = impl_->stored.regions().group_bytes() + impl_->stored.regions().tunnel_bytes();
   // Until colour trees are kept, what is kept of them is their result: a colour a sample.
-  for (const std::vector<Rgba>& colors : impl_->image.sample_colors)
+  for (const std::vector<Rgba>& colors : impl_->image().sample_colors)
     resident.color_trees += colors.size() * sizeof(Rgba);
-  const std::uint64_t frame = impl_->image.frame.pixels.size() * sizeof(Rgba);
+  const std::uint64_t frame = impl_->image().frame.pixels.size() * sizeof(Rgba);
   resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + resident.tunnels + frame;
   return resident;
 }

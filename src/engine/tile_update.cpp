@@ -46,7 +46,8 @@ class TileUpdater {
     const bool tests_all = p_.change.rays.lights_changed || (p_.tunnel_test == nullptr && p_.change.touches_segments());
     if (task == 0 && touches == nullptr && !tests_all) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
-    const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}), trees_.hits_of(sample).data()};
+    const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}),
+                            trees_.hits_of(sample).data()};
     bool update = (task & kUpdateTree) != 0 || tests_all;
     // Where the last tree has changed, this one probably has, too: no use in asking first.
     if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(*touches, primary, stored);

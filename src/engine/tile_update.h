@@ -42,7 +42,7 @@ struct UpdatePass {
   const ImageRegions& regions;
   const TunnelTest* tunnel_test = nullptr;  // null: without tunnels, every segment is tested
   ProgramTable& programs;
-  bool keeps_trees = true;                  // false: an intermediate frame of a drag
+  bool keeps_trees = true;  // false: an intermediate frame of a drag
 };
 
 [[nodiscard]] TileWork find_tile_work(const UpdatePass& pass, std::size_t tile);

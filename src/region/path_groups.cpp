@@ -42,8 +42,7 @@ void descend(const PathGroups& groups, std::uint32_t region, std::span<const std
 /// The path classes of a tile's pixels.
 class PixelClasses {
  public:
-  PixelClasses(const TileTrees& trees, std::uint32_t width, std::uint32_t samples,
-               const ClassOf& class_of)
+  PixelClasses(const TileTrees& trees, std::uint32_t width, std::uint32_t samples, const ClassOf& class_of)
       : trees_(trees), width_(width), samples_(samples), class_of_(class_of) {}
 
   [[nodiscard]] bool is_inside(std::uint32_t x, std::uint32_t y) const {

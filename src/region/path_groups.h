@@ -39,7 +39,7 @@ class PathGroups {
 
   std::size_t most_ = 0;
   std::array<std::uint8_t, kRegions> counts_{};  // kMany: no group
-  std::vector<PathId> classes_;           // [kRegions * most_]
+  std::vector<PathId> classes_;                  // [kRegions * most_]
 };
 
 /// Largest number of paths that a group may know.

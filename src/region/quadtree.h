@@ -1,6 +1,6 @@
-// The image quadtree inside one tile (paper 3.1): square regions of pixels, from leaves of kLeafSize pixels to the tile.
-// Leaves are the smallest regions that keep anything: the paper drops the two lowest levels, single pixels and squares
-// of two (4.1.3).
+// The image quadtree inside one tile (paper 3.1): square regions of pixels, from leaves of kLeafSize pixels to the
+// tile. Leaves are the smallest regions that keep anything: the paper drops the two lowest levels, single pixels and
+// squares of two (4.1.3).
 #pragma once
 #include <array>
 #include <bitset>
@@ -10,8 +10,8 @@
 
 namespace relook {
 
-inline constexpr std::uint32_t kLeafSize = 4;                         // pixels
-inline constexpr std::uint32_t kLeafSide = kTileSize / kLeafSize;     // leaves along a tile
+inline constexpr std::uint32_t kLeafSize = 4;                      // pixels
+inline constexpr std::uint32_t kLeafSide = kTileSize / kLeafSize;  // leaves along a tile
 inline constexpr std::uint32_t kLeaves = kLeafSide * kLeafSide;
 /// Regions of a tile are numbered level by level, leaves first, row by row; the last is the tile itself.
 inline constexpr std::uint32_t kRegions = 341;

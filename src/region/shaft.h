@@ -15,9 +15,9 @@ struct Shaft {
 
 /// True if and only if the shaft and the box have a point in common, boundaries included, up to double rounding. The
 /// hull of two boxes is the union over t in [0, 1] of the box whose bounds are interpolated between theirs; so the
-/// question is whether six linear inequalities in t have a common solution. Haines & Wallace's trivial rejections by the
-/// shaft's planes decide the same way against a box whose faces are aligned, too: these planes are all that can separate
-/// the two.
+/// question is whether six linear inequalities in t have a common solution. Haines & Wallace's trivial rejections by
+/// the shaft's planes decide the same way against a box whose faces are aligned, too: these planes are all that can
+/// separate the two.
 [[nodiscard]] bool touches(const Shaft& shaft, const Box& box);
 
 }  // namespace relook

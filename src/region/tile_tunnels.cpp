@@ -66,8 +66,7 @@ std::size_t TileTunnels::bytes() const {
 }
 
 void TileTunnels::append(PathId path, std::span<const TunnelSection> sections) {
-  entries_.push_back(
-      {path, static_cast<std::uint32_t>(sections_.size()), static_cast<std::uint32_t>(sections.size())});
+  entries_.push_back({path, static_cast<std::uint32_t>(sections_.size()), static_cast<std::uint32_t>(sections.size())});
   sections_.insert(sections_.end(), sections.begin(), sections.end());
 }
 

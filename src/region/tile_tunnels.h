@@ -1,5 +1,6 @@
-// The tunnels of one tile (paper 3.4): per region up to some number of tunnels, the first ones each for the ray trees of
-// one path, the last for all others. Leaves enclose their ray trees; a region above encloses its four parts' tunnels.
+// The tunnels of one tile (paper 3.4): per region up to some number of tunnels, the first ones each for the ray trees
+// of one path, the last for all others. Leaves enclose their ray trees; a region above encloses its four parts'
+// tunnels.
 #pragma once
 #include <functional>
 #include <span>

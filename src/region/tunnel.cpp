@@ -76,7 +76,8 @@ bool is_ray_touched(std::span<const TunnelSection> tunnel, const TunnelSection& 
   return !section.leaving.isEmpty() && is_beyond(origins, section.leaving, target, test);
 }
 
-bool is_light_touched(const TunnelSection& section, const LightEnd& light, const BoxSet& target, const TunnelTest& test) {
+bool is_light_touched(const TunnelSection& section, const LightEnd& light, const BoxSet& target,
+                      const TunnelTest& test) {
   if (target.empty()) return false;
   return light.directional ? is_beyond(section.points, light.end, target, test)
                            : is_between(section.points, light.end, 0, target, test);

@@ -13,10 +13,10 @@ namespace relook {
 
 struct TunnelSection {
   History history = kEye;
-  float slack = 0;                           // metres that a ray is tested beyond its hit, at most
-  std::uint32_t open = 0, blocked = 0;       // lights that some node's shadow segment reaches, or does not
-  Box points;                                // the hits, and the origins of what leaves them; at kEye: of primary rays
-  Box leaving;                               // unit directions of the rays that met nothing
+  float slack = 0;                      // metres that a ray is tested beyond its hit, at most
+  std::uint32_t open = 0, blocked = 0;  // lights that some node's shadow segment reaches, or does not
+  Box points;                           // the hits, and the origins of what leaves them; at kEye: of primary rays
+  Box leaving;                          // unit directions of the rays that met nothing
 
   bool operator==(const TunnelSection&) const = default;
 };
@@ -49,9 +49,9 @@ struct BoxSet {
 
 /// What a change of the scene can touch, in boxes that hold every hit up to rounding.
 struct ChangeBoxes {
-  BoxSet moved;           // what rays may meet now
-  BoxSet shadows_before;  // what blocked or filtered light
-  BoxSet shadows_after;   // what does so now
+  BoxSet moved;                 // what rays may meet now
+  BoxSet shadows_before;        // what blocked or filtered light
+  BoxSet shadows_after;         // what does so now
   float condition = 1;          // how much the objects' placement stretches rounding, at least 1
   bool count_blockers = false;  // a further blocker of a blocked segment is a change, too
 };

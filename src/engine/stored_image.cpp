@@ -1,0 +1,148 @@
+#include "engine/stored_image.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/parallel.h"
+#include "engine/sampling.h"
+
+namespace relook {
+namespace {
+
+bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
+
+/// `colors`: of the samples from `first` on.
+void put_on_top(const Overlay& overlay, std::uint32_t first, std::vector<Rgba>& colors) {
+  const auto found = std::ranges::lower_bound(overlay.samples, first);
+  for (auto k = static_cast<std::size_t>(found - overlay.samples.begin());
+       k < overlay.samples.size() && overlay.samples[k] < first + colors.size(); ++k)
+    colors[overlay.samples[k] - first] = overlay.colors[k];
+}
+
+/// Puts the new trees of a tile in place of the old ones. `ids`: of the update's paths in the image's table.
+void store_trees(TileTrees& trees, const TileUpdate& update, const std::vector<PathId>& ids) {
+  TileTrees next;
+  next.paths = std::move(trees.paths);
+  next.first_hit.reserve(trees.first_hit.size());
+  next.first_hit.push_back(0);
+  next.hits.reserve(trees.hits.size());
+  std::size_t k = 0;
+  for (std::uint32_t sample = 0; sample < next.paths.size(); ++sample) {
+    std::span<const Hit> hits = trees.hits_of(sample);
+    if (k < update.packed.size() && update.packed[k] == sample) {
+      next.paths[sample] = ids[update.packed_paths[k].index()];
+      hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
+      ++k;
+    }
+    next.hits.insert(next.hits.end(), hits.begin(), hits.end());
+    next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
+  }
+  trees = std::move(next);
+}
+
+}  // namespace
+
+StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms,
+                         const RegionOptions& options)
+    : image_(std::move(image)),
+      lights_(std::move(lights)),
+      atoms_(std::move(atoms)),
+      regions_(options),
+      tile_segments_(image_.trees.size(), 0),
+      compact_paths_(image_.paths.size()) {
+  index_paths();
+  parallel_for(image_.trees.size(), [&](std::size_t tile) { count_segments(tile); });
+  for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) {
+    segments_ += tile_segments_[tile];
+    samples_ += image_.trees[tile].paths.size();
+  }
+  regions_.build_groups(image_, class_of());
+}
+
+void StoredImage::index_paths() {
+  index_.extend(image_.paths, layout());
+  classes_.extend(image_.paths, layout(), atoms_);
+}
+
+void StoredImage::count_segments(std::size_t tile) {
+  tile_segments_[tile] = 0;
+  for (PathId path : image_.trees[tile].paths) tile_segments_[tile] += index_.segments(path);
+}
+
+void StoredImage::keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed) {
+  if (lights_changed) {
+    image_.paths = PathTable();
+    index_.clear();
+    classes_.clear();
+  }
+  lights_ = scene.scene.scene().light_order;
+  std::vector<std::vector<PathId>> ids(updates.size());
+  for (std::size_t tile = 0; tile < updates.size(); ++tile)
+    for (std::uint32_t i = 0; i < updates[tile].paths.size(); ++i)
+      ids[tile].push_back(image_.paths.intern(updates[tile].paths.words(PathId(i))));
+  index_paths();
+  parallel_for(updates.size(), [&](std::size_t tile) {
+    if (updates[tile].packed.empty()) return;
+    store_trees(image_.trees[tile], updates[tile], ids[tile]);
+    count_segments(tile);
+    regions_.update(image_, scene, tile, leaves_of(tile, updates[tile].packed), class_of());
+  });
+  segments_ = 0;
+  for (std::uint64_t count : tile_segments_) segments_ += count;
+  if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene);
+}
+
+Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
+  const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
+  Leaves leaves;
+  for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image_.view.samples, rect.x1 - rect.x0));
+  return leaves;
+}
+
+/// Numbers the paths in use afresh, in the order of tiles and samples.
+void StoredImage::drop_unused_paths(const GrowScene& scene) {
+  PathTable used;
+  std::vector<PathId> ids(image_.paths.size(), PathId::none());
+  for (TileTrees& tile : image_.trees)
+    for (PathId& path : tile.paths) {
+      PathId& id = ids[path.index()];
+      if (id.is_none()) id = used.intern(image_.paths.words(path));
+      path = id;
+    }
+  image_.paths = std::move(used);
+  compact_paths_ = image_.paths.size();
+  index_.clear();
+  classes_.clear();
+  index_paths();
+  regions_.build_groups(image_, class_of());
+  if (regions_.has_tunnels() && regions_.options().tunnels > 1) regions_.build_tunnels(image_, scene, class_of());
+}
+
+void StoredImage::keep_colors(const std::vector<TileUpdate>& updates) {
+  for (std::size_t tile = 0; tile < updates.size(); ++tile)
+    for (std::size_t k = 0; k < updates[tile].shaded.size(); ++k)
+      image_.sample_colors[tile][updates[tile].shaded[k]] = updates[tile].colors[k];
+}
+
+void StoredImage::refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const Overlay* overlay,
+                                 std::vector<std::uint32_t>& changed_pixels) {
+  const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
+  const std::vector<Rgba>& stored = image_.sample_colors[tile];
+  std::vector<Rgba> colors(image_.view.samples);
+  std::uint32_t last_pixel = kNoNode;
+  for (std::uint32_t sample : samples) {
+    const std::uint32_t pixel = sample / image_.view.samples;
+    if (pixel == last_pixel) continue;
+    last_pixel = pixel;
+    const std::uint32_t first = pixel * image_.view.samples;
+    std::copy_n(stored.begin() + first, image_.view.samples, colors.begin());
+    if (overlay != nullptr) put_on_top(*overlay, first, colors);
+    const std::size_t place = frame_index(rect, pixel, image_.frame.width);
+    const Rgba color = pixel_color(colors.data(), image_.view.samples);
+    if (same_bits(color, image_.frame.pixels[place])) continue;
+    image_.frame.pixels[place] = color;
+    changed_pixels.push_back(static_cast<std::uint32_t>(place));
+  }
+}
+
+}  // namespace relook

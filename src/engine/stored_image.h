@@ -1,0 +1,69 @@
+// What is kept of an image through a series of edits: paths, trees, colours, frame, and what helps to find things in
+// them. Brought up to date with what the passes over its tiles have found.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "engine/image.h"
+#include "engine/path_classes.h"
+#include "engine/path_index.h"
+#include "engine/regions.h"
+#include "engine/tile_update.h"
+
+namespace relook {
+
+/// Colours of single samples of a tile in place of the stored ones: those of an intermediate frame of a drag.
+struct Overlay {
+  std::vector<std::uint32_t> samples;  // increasing
+  std::vector<Rgba> colors;
+};
+
+class StoredImage {
+ public:
+  /// `atoms`: see atoms_of(); empty without atoms.
+  StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms, const RegionOptions& options);
+
+  [[nodiscard]] const Image& image() const { return image_; }
+  [[nodiscard]] const std::vector<LightId>& lights() const { return lights_; }  // light order of the paths
+  [[nodiscard]] const PathIndex& index() const { return index_; }
+  [[nodiscard]] const PathClasses& classes() const { return classes_; }
+  [[nodiscard]] const ImageRegions& regions() const { return regions_; }
+  [[nodiscard]] std::uint64_t segments() const { return segments_; }
+  [[nodiscard]] std::uint64_t samples() const { return samples_; }
+
+  /// For scenes to which objects have been added.
+  void set_atoms(std::vector<ObjectId> atoms) { atoms_ = std::move(atoms); }
+  /// Requires: the trees hold in `scene`.
+  void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
+
+  /// Takes over new trees, by tile, and keeps the regions equal to what would be built from them. `scene`: in which
+  /// they hold. `lights_changed`: all samples have been packed anew, since the form of paths follows the light order.
+  void keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
+  void keep_colors(const std::vector<TileUpdate>& updates);
+  /// Works the pixels of some samples of a tile out again, appends those that differ to `changed_pixels`. `overlay`:
+  /// may be null.
+  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const Overlay* overlay,
+                      std::vector<std::uint32_t>& changed_pixels);
+
+ private:
+  [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }
+  [[nodiscard]] ClassOf class_of() const {
+    return [this](PathId path) { return classes_.of(path); };
+  }
+  void index_paths();
+  void count_segments(std::size_t tile);
+  void drop_unused_paths(const GrowScene& scene);
+  [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
+
+  Image image_;
+  std::vector<LightId> lights_;
+  PathIndex index_;
+  PathClasses classes_;
+  std::vector<ObjectId> atoms_;
+  ImageRegions regions_;
+  std::vector<std::uint64_t> tile_segments_;
+  std::uint64_t segments_ = 0, samples_ = 0;
+  std::size_t compact_paths_;  // size of the path table when it last held no unused paths
+};
+
+}  // namespace relook
