@@ -56,7 +56,10 @@ RayScene::RayScene(const Scene& scene) : scene_(&scene) {
 
 void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   scene_ = &scene;
-  std::vector<bool> stale(scene.objects.size(), false);
+  const auto remake = [&](std::size_t i) {
+    const Object& object = scene.objects[i];
+    *objects_[i] = make_object(scene, object, scene.material(object.material));
+  };
   materials_.resize(scene.materials.size());
   std::vector<bool> stale_material(scene.materials.size(), false);
   for (const auto& change : delta.materials) {
@@ -65,13 +68,12 @@ void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   }
   for (std::size_t i = 0; i < materials_.size(); ++i)
     if (!materials_[i]) materials_[i] = std::make_shared<const Material>(scene.materials[i]);
-  for (const auto& change : delta.objects) stale[change.id.index()] = true;
+  const std::size_t known = objects_.size();
   while (objects_.size() < scene.objects.size()) objects_.push_back(std::make_unique<RayObject>());
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    const Object& object = scene.objects[i];
-    if (stale[i] || stale_material[object.material.index()] || !objects_[i]->mesh)
-      *objects_[i] = make_object(scene, object, scene.material(object.material));
-  }
+  for (std::size_t i = known; i < objects_.size(); ++i) remake(i);
+  for (const auto& change : delta.objects) remake(change.id.index());
+  for (std::size_t i = 0; i < known && !delta.materials.empty(); ++i)
+    if (stale_material[scene.objects[i].material.index()]) remake(i);
 }
 
 RayObject RayScene::make_object(const Scene& scene, const Object& object, const Material& material) const {
