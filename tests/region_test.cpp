@@ -128,8 +128,9 @@ TEST(Finding, NothingIsTestedWhereTunnelsSeeNothing) {
       parsed_edit(R"([{"op": "replace", "path": "/nodes/Away/translation", "value": [1, -51, 0]}])"), "away", ".");
   EXPECT_EQ(step.counters.ray_tests, 0U);
   EXPECT_EQ(step.counters.samples_affected, 0U);
-  EXPECT_GT(step.counters.regions_culled, 0U);
+  EXPECT_GT(step.counters.by_tunnels.culled, 0U);
   EXPECT_EQ(step.counters.ray_tests_culled, replayer.segments());
+  EXPECT_EQ(step.counters.culled_by_tunnels, replayer.segments());
 }
 
 TEST(Finding, TunnelsLeaveFewTests) {

@@ -2,13 +2,16 @@
 #pragma once
 #include <cstdint>
 
+#include "region/quadtree.h"
+
 namespace relook {
 
 struct Counters {
   std::uint64_t samples_total = 0, samples_affected = 0;  // affected: visited because they may change
   std::uint64_t pixels_changed = 0;                       // pixels with at least one different bit
-  std::uint64_t regions_visited = 0, regions_culled = 0;
+  RegionCounters by_groups, by_tunnels;                   // regions visited and culled by either
   std::uint64_t ray_tests = 0, ray_tests_culled = 0;      // stored segments tested against the selection only, or not
+  std::uint64_t culled_by_tunnels = 0;                    // of those not tested; the others the edit's class rules out
   std::uint64_t ray_updates = 0;                          // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree

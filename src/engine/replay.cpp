@@ -135,8 +135,8 @@ struct Replayer::Impl {
       counters.ray_tests += update.counters.ray_tests;
       counters.ray_updates += update.counters.ray_updates;
       counters.shadow_updates += update.counters.shadow_updates;
-      counters.regions_visited += work.by_groups.visited + work.by_tunnels.visited;
-      counters.regions_culled += work.by_groups.culled + work.by_tunnels.culled;
+      counters.by_groups += work.by_groups;
+      counters.by_tunnels += work.by_tunnels;
     }
   }
 
@@ -195,6 +195,7 @@ struct Replayer::Impl {
     counters.color_trees_evaluated = counters.samples_affected;
     counters.pixels_changed = result.changed_pixels.size();
     counters.ray_tests_culled = segments_before - std::min(segments_before, counters.ray_tests);
+    if (counters.by_tunnels.visited > 0) counters.culled_by_tunnels = counters.ray_tests_culled;
   }
 
   /// The change that puts the lifted objects, where they are now, back into the ray trees.

@@ -55,6 +55,10 @@ Json verify_json(const std::optional<VerifyResult>& verify) {
   return {{"pixels_compared", verify->pixels_compared}, {"pixels_different", verify->pixels_different}};
 }
 
+Json regions_json(const RegionCounters& regions) {
+  return {{"visited", regions.visited}, {"culled", regions.culled}};
+}
+
 Json step_json(const StepReport& step) {
   const Counters& counters = step.counters;
   return {{"step", step.step},
@@ -68,10 +72,14 @@ Json step_json(const StepReport& step) {
           {"samples_total", counters.samples_total},
           {"samples_affected", counters.samples_affected},
           {"pixels_changed", counters.pixels_changed},
-          {"regions_visited", counters.regions_visited},
-          {"regions_culled", counters.regions_culled},
+          {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
+          {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
+          {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
           {"ray_tests", counters.ray_tests},
           {"ray_tests_culled", counters.ray_tests_culled},
+          {"ray_tests_culled_by",
+           {{"tunnels", counters.culled_by_tunnels},
+            {"class", counters.ray_tests_culled - counters.culled_by_tunnels}}},
           {"ray_updates", counters.ray_updates},
           {"shadow_updates", counters.shadow_updates},
           {"object_rays", counters.object_rays},

@@ -44,7 +44,7 @@ struct StepReport {
 struct StructureOptions {
   std::optional<std::uint64_t> memory_bytes;
   double ray_trees_percent = 100, color_trees_percent = 100;
-  std::uint32_t tunnels = 2, groups = 4, atoms = 0;
+  std::uint32_t tunnels = 1, groups = 4, atoms = 0;
 };
 
 struct CacheSizes {
