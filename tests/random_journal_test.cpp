@@ -253,6 +253,24 @@ void expect_fresh_structures(const Replayer& replayer, const std::string& what) 
   ASSERT_EQ(stale_tiles(replayer), 0U) << what;
 }
 
+/// The same places with other values, where that is possible: consecutive edits of one selection.
+std::vector<Json> with_other_values(const std::vector<Json>& operations, Dice& dice) {
+  std::vector<Json> others;
+  for (Json operation : operations) {
+    if (!operation.contains("value")) return {};
+    Json& value = operation["value"];
+    const std::string path = operation["path"];
+    if (value.is_number())
+      value = path.ends_with("/ior") ? dice.between(1, 2.5) : dice.between(0, 1);
+    else if (value.is_array() && value.size() == 3)
+      value = dice.color();
+    else
+      return {};
+    others.push_back(std::move(operation));
+  }
+  return others;
+}
+
 /// One frame of a drag: something that a node's selection can do, now and then to its light.
 Change random_movement(const Json& look, const std::string& node, Dice& dice) {
   Change change;
@@ -310,6 +328,12 @@ TEST_P(RandomJournal, EveryFrameIsAFullRender) {
     steps_that_changed += step.changed_pixels.empty() ? 0 : 1;
     if (k % 10 == 0) {
       ASSERT_NO_FATAL_FAILURE(expect_fresh_structures(replayer, what));
+    }
+    if (const auto others = with_other_values(change.forward, dice); !others.empty() && dice.chance(0.5)) {
+      replayer.step(edit_of_list(others), "random", ".");
+      ASSERT_NO_FATAL_FAILURE(expect_full_render(replayer, what + " then " + Json(others).dump()));
+      replayer.step(edit_of_list(change.forward), "random", ".");
+      ASSERT_NO_FATAL_FAILURE(expect_full_render(replayer, what + " and again"));
     }
     if (dice.chance(0.1)) {
       ASSERT_NO_FATAL_FAILURE(drag_at_random(replayer, dice, what));

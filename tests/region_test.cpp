@@ -133,6 +133,32 @@ TEST(Finding, NothingIsTestedWhereTunnelsSeeNothing) {
   EXPECT_EQ(step.counters.culled_by_tunnels, replayer.segments());
 }
 
+TEST(Finding, TheSameSelectionIsNotLookedForTwice) {
+  Replayer replayer = replayer_of(TestScene::spheres, {1, 6}, {});
+  const auto paint = [&](const char* value) {
+    return replayer.step(
+        parsed_edit(std::string(R"([{"op": "replace", "path": "/materials/Matte/pbrMetallicRoughness/baseColorFactor",
+                    "value": )") +
+                    value + "}]"),
+        "paint", ".");
+  };
+  const StepResult first = paint("[0.9, 0.1, 0.1, 1]"), second = paint("[0.1, 0.9, 0.1, 1]");
+  EXPECT_GT(first.counters.by_groups.visited, 0U);
+  EXPECT_EQ(second.counters.by_groups.visited, 0U);
+  EXPECT_EQ(second.counters.samples_affected, first.counters.samples_affected);
+  EXPECT_EQ(second.dependent, first.dependent);
+  const auto bend = [&](const char* value) {
+    return replayer.step(
+        parsed_edit(std::string(R"([{"op": "replace", "path": "/materials/Glass/extensions/KHR_materials_ior/ior",
+                    "value": )") +
+                    value + "}]"),
+        "bend", ".");
+  };
+  EXPECT_GT(bend("1.4").counters.by_groups.visited, 0U);
+  EXPECT_EQ(bend("1.6").counters.by_groups.visited, 0U);
+  EXPECT_GT(paint("[0.5, 0.5, 0.1, 1]").counters.by_groups.visited, 0U);
+}
+
 TEST(Finding, TunnelsLeaveFewTests) {
   std::uint64_t tests[2] = {0, 0};
   for (const std::size_t tunnels : {0U, 1U}) {

@@ -20,6 +20,7 @@ struct ColorChange {
   [[nodiscard]] bool empty() const {
     return materials.empty() && lights.empty() && reassigned.empty() && !ambient && !environment;
   }
+  bool operator==(const ColorChange&) const = default;
   /// The changed fields of a material.
   [[nodiscard]] FieldMask fields_of(MaterialId material) const;
   /// Can the change alter what a program yields?

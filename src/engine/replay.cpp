@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "engine/kept_selection.h"
 #include "engine/scene_level.h"
 #include "engine/stored_image.h"
 
@@ -42,6 +43,7 @@ struct Replayer::Impl {
   RayScene rays;
   StoredImage stored;
   ProgramTable programs;
+  KeptSelection selection;
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
   std::vector<Overlay> overlays;      // by tile, while objects are lifted
@@ -77,9 +79,12 @@ struct Replayer::Impl {
   /// Works `change` out against the stored trees; `absent`: objects that are in no ray tree afterwards.
   PassResult run(StepChange& change, std::span<const ObjectId> absent, bool keeps_trees, StepResult& result,
                  StopWatch& watch) {
-    const PathTasks tasks = find_path_tasks(
-        {rays, image().paths, stored.index(), stored.lights(), image().view.shadow_bits, stored.classes()}, change,
-        programs);
+    const std::vector<Leaves>* known_leaves = selection.leaves(change);
+    const PathTasks* known_tasks = selection.tasks(change);
+    PathTasks tasks = known_tasks != nullptr ? *known_tasks
+                                             : find_path_tasks({rays, image().paths, stored.index(), stored.lights(),
+                                                                image().view.shadow_bits, stored.classes()},
+                                                               change, programs);
     watch.lap(result.seconds.select);
     const Tracer::TopLevel* scene_level = nullptr;
     if (change.touches_rays()) {
@@ -105,6 +110,7 @@ struct Replayer::Impl {
                           stored.classes(),
                           stored.regions(),
                           uses_tunnels ? &tunnel_test : nullptr,
+                          known_leaves,
                           programs,
                           keeps_trees};
     PassResult done;
@@ -119,6 +125,9 @@ struct Replayer::Impl {
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
     count(done, result);
+    std::vector<Leaves> leaves;
+    for (const TileWork& work : done.works) leaves.push_back(work.by_path);
+    selection.keep(change, std::move(tasks), std::move(leaves));
     return done;
   }
 

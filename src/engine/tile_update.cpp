@@ -117,7 +117,9 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
     work.leaves.set();
     return work;
   }
-  if (pass.tasks.any) {
+  if (pass.known_leaves != nullptr) {
+    work.by_path = (*pass.known_leaves)[tile];
+  } else if (pass.tasks.any) {
     if (pass.regions.has_groups())
       select_leaves(pass.regions.groups(tile), pass.tasks.of_class, work.by_path, work.by_groups);
     else

@@ -40,7 +40,8 @@ struct UpdatePass {
   const PathTasks& tasks;
   const PathClasses& classes;
   const ImageRegions& regions;
-  const TunnelTest* tunnel_test = nullptr;  // null: without tunnels, every segment is tested
+  const TunnelTest* tunnel_test = nullptr;            // null: without tunnels, every segment is tested
+  const std::vector<Leaves>* known_leaves = nullptr;  // by tile, those that paths tell; null: to be found
   ProgramTable& programs;
   bool keeps_trees = true;  // false: an intermediate frame of a drag
 };
