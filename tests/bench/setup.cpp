@@ -1,0 +1,92 @@
+#include "setup.h"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/error.h"
+
+namespace relook {
+
+BenchOptions parse_options(int count, char** arguments) {
+  if (count < 3)
+    throw UsageError("relook_bench SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]] or relook_bench growth SCENE JOURNAL");
+  BenchOptions options;
+  options.scene = arguments[1];
+  options.journal = arguments[2];
+  if (count > 3 && std::sscanf(arguments[3], "%ux%u", &options.width, &options.height) != 2)
+    throw UsageError("the resolution is WIDTHxHEIGHT");
+  if (count > 4) options.view.samples = static_cast<std::uint32_t>(std::strtoul(arguments[4], nullptr, 10));
+  return options;
+}
+
+SceneState load_scene(const BenchOptions& options) {
+  LookDocument document = make_look_document(import_gltf(options.scene));
+  const std::string choice = document.cameras.empty() ? "auto" : "";
+  const Camera camera = choose_camera(document, choice, options.width, options.height);
+  if (document.look.at("lights").empty()) add_auto_lights(document, camera);
+  return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
+}
+
+double time_of(const std::function<void()>& body) {
+  const auto start = std::chrono::steady_clock::now();
+  body();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double fastest(int runs, const std::function<void()>& body) {
+  double best = 0;
+  for (int run = 0; run < runs; ++run) {
+    const double seconds = time_of(body);
+    if (run == 0 || seconds < best) best = seconds;
+  }
+  return best;
+}
+
+TimedStep timed(Replayer& replayer, StepKind kind, const Edit& edit, const Journal& journal) {
+  TimedStep step;
+  const std::filesystem::path folder = journal.path.parent_path();
+  step.seconds = time_of([&] {
+    step.result =
+        kind == StepKind::drag ? replayer.drag(edit, journal.file, folder) : replayer.step(edit, journal.file, folder);
+  });
+  return step;
+}
+
+TimedStep timed_release(Replayer& replayer) {
+  TimedStep step;
+  step.seconds = time_of([&] { step.result = replayer.release(); });
+  return step;
+}
+
+void keep_faster(TimedStep& best, TimedStep step) {
+  if (best.seconds == 0 || step.seconds < best.seconds) best = std::move(step);
+}
+
+Edit whole_edit(const JournalStep& step) {
+  Edit whole = step.edit;
+  for (const Edit& entry : step.drag) whole.insert(whole.end(), entry.begin(), entry.end());
+  return whole;
+}
+
+Edit inverse_of(const Edit& edit, const Json& look) {
+  Edit inverse;
+  for (const PatchOperation& operation : edit) {
+    if (operation.op == PatchOp::test) continue;
+    require(operation.op != PatchOp::move && operation.op != PatchOp::copy, "an edit to be undone moves no values");
+    PatchOperation undo = operation;
+    const Json::json_pointer at(operation.path);
+    if (look.contains(at)) {
+      undo.op = operation.op == PatchOp::remove ? PatchOp::add : PatchOp::replace;
+      undo.value = look.at(at);
+    } else if (operation.op == PatchOp::add) {
+      undo.op = PatchOp::remove;
+    } else {
+      continue;  // below something that the edit has added
+    }
+    inverse.insert(inverse.begin(), std::move(undo));
+  }
+  return inverse;
+}
+
+}  // namespace relook

@@ -1,0 +1,48 @@
+// What every measure of the benchmark needs: its options, the scene ready to be edited, and times.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "edit/journal.h"
+#include "engine/image.h"
+#include "engine/replay.h"
+#include "scene/state.h"
+
+namespace relook {
+
+struct BenchOptions {
+  std::string scene, journal;  // journal "-": none
+  std::uint32_t width = 1920, height = 1080;
+  ViewOptions view;
+
+  [[nodiscard]] double pixels() const { return static_cast<double>(width) * height; }
+  [[nodiscard]] double samples() const { return pixels() * view.samples; }
+};
+
+/// SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]]. Throws UsageError.
+[[nodiscard]] BenchOptions parse_options(int count, char** arguments);
+[[nodiscard]] SceneState load_scene(const BenchOptions& options);
+
+/// The time of one call, and of the fastest of some calls, in seconds.
+[[nodiscard]] double time_of(const std::function<void()>& body);
+[[nodiscard]] double fastest(int runs, const std::function<void()>& body);
+
+/// A step of a replay and its time as the caller sees it.
+struct TimedStep {
+  StepResult result;
+  double seconds = 0;
+};
+enum class StepKind : std::uint8_t { step, drag };
+/// `journal`: whose folder holds what the edit names.
+[[nodiscard]] TimedStep timed(Replayer& replayer, StepKind kind, const Edit& edit, const Journal& journal);
+[[nodiscard]] TimedStep timed_release(Replayer& replayer);
+/// Keeps the faster of two runs of one step.
+void keep_faster(TimedStep& best, TimedStep step);
+
+/// All operations of a step, a drag's entries one after the other.
+[[nodiscard]] Edit whole_edit(const JournalStep& step);
+/// The edit that gives the values that `look` has back. Requires: operations add, remove, replace and test only, on
+/// paths as the look document spells them.
+[[nodiscard]] Edit inverse_of(const Edit& edit, const Json& look);
+
+}  // namespace relook
