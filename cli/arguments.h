@@ -29,7 +29,7 @@ struct Arguments {
   ViewArguments view;
   StructureOptions structures;
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
-  std::size_t threads = 0;  // 0: all
+  std::size_t threads = 0;                   // 0: all
   bool quiet = false, json = false;
   bool overlays = false;  // images of the regions found
   ProgressStyle progress = ProgressStyle::automatic;

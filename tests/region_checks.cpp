@@ -8,7 +8,7 @@ namespace {
 
 PathClasses classes_of(const Replayer& replayer) {
   const std::uint32_t atoms = replayer.regions().options().atoms;
-  PathClasses classes;
+  PathClasses classes(atoms > 0);
   classes.extend(replayer.image().paths, layout_of(replayer),
                  atoms > 0 ? atoms_of(replayer.state(), atoms) : std::vector<ObjectId>());
   return classes;

@@ -110,7 +110,7 @@ TEST(Groups, KnowThePathsOfTheirRegions) {
 TEST(Groups, AreLargerWithAtoms) {
   const Replayer replayer = replayer_of(TestScene::study, {1, 6}, {});
   const auto count = [&](std::uint32_t depth) {
-    PathClasses classes;
+    PathClasses classes(depth > 0);
     classes.extend(replayer.image().paths, layout_of(replayer),
                    depth > 0 ? atoms_of(replayer.state(), depth) : std::vector<ObjectId>());
     return classes.size();
@@ -172,6 +172,64 @@ TEST(Finding, TunnelsLeaveFewTests) {
   }
   EXPECT_GT(tests[1], 0U);
   EXPECT_LT(tests[1] * 2, tests[0]);
+}
+
+TEST(Groups, StayFreshWhenTheHierarchyChanges) {
+  RegionOptions regions;
+  regions.atoms = 1;
+  Replayer replayer = replayer_of(TestScene::spheres, {1, 6}, regions);
+  const auto step = [&](const char* edit) {
+    replayer.step(parsed_edit(edit), "atoms", ".");
+    EXPECT_EQ(stale_tiles(replayer), 0U) << edit;
+  };
+  step(R"([{"op": "add", "path": "/nodes/Pair", "value": {"mesh": "Ball", "translation": [1, 1, 1]}}])");
+  step(R"([{"op": "add", "path": "/nodes/Part", "value": {"mesh": "Ball", "translation": [0.2, 1, 1.5]}}])");
+  step(R"([{"op": "add", "path": "/nodes/Pair/children", "value": ["Part"]}])");
+  step(R"([{"op": "replace", "path": "/nodes/Pair/children", "value": []}])");
+}
+
+TEST(Groups, OfASceneThatGetsItsFirstObjectKnowAtoms) {
+  SceneBuilder scene;
+  scene.mesh("Ball", sphere_mesh(1, 8, 6), scene.material("Matte", Json::object()));
+  scene.light("Lamp", {{"type", "point"}, {"intensity", 60}}, {{"translation", {2, 4, 3}}});
+  scene.look_at(Point(0, 0, 5), Point(0, 0, 0), 40, 32, 32);
+  SceneState state = scene.state();
+  Image image = preprocessed(state.scene(), {1, 6});
+  RegionOptions regions;
+  regions.atoms = 1;
+  Replayer replayer(std::move(state), std::move(image), regions);
+  for (const char* name : {"First", "Second"}) {
+    replayer.step(parsed_edit(std::string(R"([{"op": "add", "path": "/nodes/)") + name +
+                              R"(", "value": {"mesh": "Ball", "translation": [0.3, 0, 0]}}])"),
+                  "atoms", ".");
+    EXPECT_EQ(stale_tiles(replayer), 0U) << name;
+  }
+}
+
+/// Both passes of a drag's first frame count: over the trees with the selection, and over those without it.
+TEST(Drag, CountsEachStoredSegmentOncePerPass) {
+  for (const std::size_t tunnels : {0U, 1U}) {
+    RegionOptions regions;
+    regions.tunnels = tunnels;
+    Replayer replayer = replayer_of(TestScene::spheres, {1, 6}, regions);
+    const auto total = [](const StepResult& step) { return step.counters.ray_tests + step.counters.ray_tests_culled; };
+    const auto drag = [&](const char* place) {
+      const StepResult step = replayer.drag(
+          parsed_edit(std::string(R"([{"op": "replace", "path": "/nodes/Ground/translation", "value": )") + place +
+                      "}]"),
+          "drag", ".");
+      EXPECT_LE(step.counters.samples_affected, step.counters.samples_total);
+      return step;
+    };
+    const std::uint64_t before = replayer.segments();
+    const StepResult first = drag("[0.1, 0, 0]");
+    const std::uint64_t without = replayer.segments();
+    EXPECT_LT(without, before);
+    EXPECT_EQ(total(first), before + without);
+    EXPECT_EQ(total(drag("[0.2, 0, 0]")), without);
+    EXPECT_EQ(total(replayer.release()), without);
+    EXPECT_EQ(total(replayer.release()), replayer.segments());  // nothing to release
+  }
 }
 
 }  // namespace

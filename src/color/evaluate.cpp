@@ -85,7 +85,13 @@ class Run {
  public:
   Run(const BoundProgram& bound, const RayScene& scene, const TreeBlock& block, bool are_filters, BlockColors& colors,
       std::vector<Column>& registers)
-      : program_(*bound.program), material_(bound.material), scene_(scene), block_(block), are_filters_(are_filters), colors_(colors), r_(registers) {}
+      : program_(*bound.program),
+        material_(bound.material),
+        scene_(scene),
+        block_(block),
+        are_filters_(are_filters),
+        colors_(colors),
+        r_(registers) {}
 
   void fill_uniform() {
     for (const auto& step : program_.uniform) {

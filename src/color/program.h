@@ -83,7 +83,7 @@ struct MaterialStructure {
   IlluminationModel model = IlluminationModel::metallic_roughness;
   AlphaMode alpha_mode = AlphaMode::opaque;
   bool transmits = false, thick = false, sheen = false, clearcoat = false;  // the value is not zero
-  std::uint16_t textures = 0;                                              // bit per Slot: there is one
+  std::uint16_t textures = 0;                                               // bit per Slot: there is one
   auto operator<=>(const MaterialStructure&) const = default;
 };
 static_assert(kSlotCount <= 16);

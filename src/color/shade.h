@@ -13,8 +13,8 @@
 
 namespace relook {
 
-/// Programs by key, built on first use and shared between materials of the same structure; thread-safe. Programs hold no
-/// parameter values, so they outlive colour edits.
+/// Programs by key, built on first use and shared between materials of the same structure; thread-safe. Programs hold
+/// no parameter values, so they outlive colour edits.
 class ProgramTable {
  public:
   /// `scene`: as it is now; programs are built from it.

@@ -19,7 +19,8 @@ Box world_bounds(const RayObject& object) {
   float largest = 0;
   for (int axis = 0; axis < 3; ++axis)
     largest = std::max(largest, std::max(std::fabs(box.min[axis]), std::fabs(box.max[axis])));
-  const float margin = 0x1p-16F * largest * object.condition;
+  // The object's offset knows how large the numbers are that cancel on the way to the world.
+  const float margin = std::max(0x1p-16F * largest, 8 * object.offset) * object.condition;
   const Point around(margin, margin, margin);
   return Box(box.min - around, box.max + around);
 }

@@ -40,7 +40,6 @@ std::vector<ObjectId> atoms_of(const SceneState& state, std::uint32_t depth) {
 }
 
 void PathClasses::extend(const PathTable& paths, const PathLayout& layout, const std::vector<ObjectId>& atoms) {
-  has_atoms_ = !atoms.empty();
   std::vector<std::uint32_t> words;
   for (; paths_ < paths.size(); ++paths_) {
     if (!has_atoms_) continue;

@@ -14,8 +14,9 @@ namespace relook {
 
 class PathClasses {
  public:
-  /// Takes in the paths that the table has got since the last call. `atoms`: see atoms_of(); empty: each path is a
-  /// class of its own.
+  /// Without atoms each path is a class of its own.
+  explicit PathClasses(bool has_atoms) : has_atoms_(has_atoms) {}
+  /// Takes in the paths that the table has got since the last call. `atoms`: see atoms_of(); not read without atoms.
   void extend(const PathTable& paths, const PathLayout& layout, const std::vector<ObjectId>& atoms);
   void clear();
 
@@ -23,7 +24,7 @@ class PathClasses {
   [[nodiscard]] std::size_t size() const { return has_atoms_ ? classes_.size() : paths_; }
 
  private:
-  bool has_atoms_ = false;
+  bool has_atoms_;
   std::size_t paths_ = 0;
   std::vector<PathId> class_of_;
   PathTable classes_;  // paths with the objects that stand for their atoms

@@ -26,7 +26,6 @@ class ImageRegions {
   void build_groups(const Image& image, const ClassOf& class_of);
   /// Tunnels of all tiles, afresh. `grow`: the scene in which the image's trees hold.
   void build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
-  void drop_tunnels() { tunnels_.clear(); }
   [[nodiscard]] bool has_groups() const { return !groups_.empty(); }
   [[nodiscard]] bool has_tunnels() const { return !tunnels_.empty(); }
 

@@ -36,6 +36,13 @@ std::vector<std::size_t> by_work(const std::vector<TileWork>& works) {
   return tiles;
 }
 
+/// How many values two increasing lists have in common.
+std::size_t common(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  std::vector<std::uint32_t> both;
+  std::ranges::set_intersection(a, b, std::back_inserter(both));
+  return both.size();
+}
+
 }  // namespace
 
 struct Replayer::Impl {
@@ -46,7 +53,7 @@ struct Replayer::Impl {
   KeptSelection selection;
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
-  std::vector<Overlay> overlays;      // by tile, while objects are lifted
+  std::vector<ShownSamples> on_top;   // by tile, while objects are lifted: where they are seen
 
   Impl(SceneState s, Image i, const RegionOptions& options)
       : state(std::move(s)),
@@ -57,6 +64,7 @@ struct Replayer::Impl {
   [[nodiscard]] std::vector<ObjectId> atoms(std::uint32_t depth) const {
     return depth > 0 ? atoms_of(state, depth) : std::vector<ObjectId>();
   }
+  [[nodiscard]] bool has_atoms() const { return stored.regions().options().atoms > 0; }
   [[nodiscard]] GrowScene grow(const Tracer::TopLevel* scene_level) const {
     return {rays, scene_level, image().view.max_depth, image().view.shadow_bits};
   }
@@ -100,6 +108,7 @@ struct Replayer::Impl {
     if (uses_tunnels) {
       boxes = boxes_of(change, rays, absent);
       boxes.count_blockers = image().view.shadow_bits > 0;
+      change.rays.bounds = {boxes.moved.all, boxes.shadows_before.all, boxes.shadows_after.all, boxes.condition};
     }
     const TunnelTest tunnel_test{boxes, ends};
     const UpdatePass pass{image(),
@@ -131,35 +140,42 @@ struct Replayer::Impl {
     return done;
   }
 
-  static void count(const PassResult& done, StepResult& result) {
+  void count(const PassResult& done, StepResult& result) const {
     Counters& counters = result.counters;
+    std::uint64_t tests = 0, tunnel_visits = 0;
     result.dependent.resize(done.works.size());
     result.touched.resize(done.works.size());
     for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
       const TileUpdate& update = done.updates[tile];
       const TileWork& work = done.works[tile];
       result.dependent[tile] |= work.by_path;
+      result.touched[tile] |= work.leaves & ~work.by_path;
       for (const LeafTouches& leaf : work.touched) result.touched[tile].set(leaf.leaf);
       counters.samples_affected += update.shaded.size();
-      counters.ray_tests += update.counters.ray_tests;
+      counters.color_trees_evaluated += update.shaded.size();
+      tests += update.counters.ray_tests;
+      tunnel_visits += work.by_tunnels.visited;
       counters.ray_updates += update.counters.ray_updates;
       counters.shadow_updates += update.counters.shadow_updates;
       counters.by_groups += work.by_groups;
       counters.by_tunnels += work.by_tunnels;
     }
+    require(tests <= stored.segments(), "each stored segment is tested once at most");
+    counters.ray_tests += tests;
+    counters.ray_tests_culled += stored.segments() - tests;
+    if (tunnel_visits > 0) counters.culled_by_tunnels += stored.segments() - tests;
   }
 
   /// Applies the edit to the scene and finds what it means.
   StepChange begin(const Edit& edit, std::string_view file, const std::filesystem::path& folder, StepResult& result) {
-    const std::size_t objects_before = state.scene().objects.size();
     const SceneDelta delta = apply_edit(state, edit, file, folder);
     result.classification = classify(state.scene(), delta);
+    if (has_atoms()) stored.extend_atoms(atoms(stored.regions().options().atoms));
     // Tunnels hold for the scene in which the trees were made; they are built when a change first needs them.
     StepChange change = find_change(rays, state.scene(), delta, stored.lights());
     if (change.touches_segments() && !change.rays.lights_changed && !stored.regions().has_tunnels())
       stored.build_tunnels(grow(nullptr));
     rays.update(state.scene(), delta);
-    if (state.scene().objects.size() != objects_before) stored.set_atoms(atoms(stored.regions().options().atoms));
     if (level) level->note_changed(selection_of(change));
     forget_programs(change);
     result.counters.samples_total = stored.samples();
@@ -180,12 +196,11 @@ struct Replayer::Impl {
     if (change.touches_rays()) stored.keep_trees(updates, grow(nullptr), change.rays.lights_changed);
   }
   void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, StepResult& result) {
-    stored.refresh_pixels(tile, samples, overlays.empty() ? nullptr : &overlays[tile], result.changed_pixels);
+    stored.refresh_pixels(tile, samples, on_top.empty() ? nullptr : &on_top[tile], result.changed_pixels);
   }
 
   /// Brings trees, colours and frame up to date with the scene.
   void update(StepChange& change, StepResult& result, StopWatch& watch) {
-    const std::uint64_t segments_before = stored.segments();
     if (change.touches_rays() || !change.colors.empty()) {
       const PassResult done = run(change, {}, true, result, watch);
       keep_trees(done.updates, change);
@@ -195,28 +210,36 @@ struct Replayer::Impl {
         refresh_pixels(tile, done.updates[tile].shaded, result);
       watch.lap(result.seconds.evaluate);
     }
-    finish(result, segments_before);
+    finish(result);
   }
 
-  static void finish(StepResult& result, std::uint64_t segments_before) {
+  void finish(StepResult& result) {
+    if (has_atoms()) stored.set_atoms(atoms(stored.regions().options().atoms), grow(nullptr));
     std::ranges::sort(result.changed_pixels);
     Counters& counters = result.counters;
-    counters.color_trees_evaluated = counters.samples_affected;
     counters.pixels_changed = result.changed_pixels.size();
-    counters.ray_tests_culled = segments_before - std::min(segments_before, counters.ray_tests);
-    if (counters.by_tunnels.visited > 0) counters.culled_by_tunnels = counters.ray_tests_culled;
+    if (counters.ray_tests + counters.ray_tests_culled == 0) counters.ray_tests_culled = stored.segments();  // no pass
   }
 
-  /// The change that puts the lifted objects, where they are now, back into the ray trees.
+  /// Makes a change also put the lifted objects, where they are now, back into the ray trees.
+  void put_back_with(StepChange& change) const {
+    for (ObjectId id : lifted) {
+      change.rays.objects[id.index()] |= RayChange::moved | RayChange::shadows;
+      change.rays.before_index[id.index()] = kNoNode;  // in no tree
+    }
+    if (lifted.empty()) return;
+    change.any_moved = true;
+    change.any_shadows = true;
+  }
+  /// A change that does nothing else.
   [[nodiscard]] StepChange put_back() const {
     StepChange change;
     RayChange& r = change.rays;
     r.objects.assign(state.scene().objects.size(), 0);
     r.before_index.assign(state.scene().objects.size(), kNoNode);
-    for (ObjectId id : lifted) r.objects[id.index()] = RayChange::moved | RayChange::shadows;
     r.old_lights = stored.lights();
     for (std::uint32_t i = 0; i < stored.lights().size(); ++i) r.old_light_index.push_back(i);
-    change.any_moved = change.any_shadows = !lifted.empty();
+    put_back_with(change);
     return change;
   }
 
@@ -225,24 +248,18 @@ struct Replayer::Impl {
     StopWatch watch;
     StepChange change = begin(edit, file, folder, result);
     watch.lap(result.seconds.classify);
-    const std::uint64_t segments_before = stored.segments();
     if (!is_movement(change)) {
-      // Lights move with the selection, say: not the paper's kind of drag. All that is lifted goes back, too.
-      for (ObjectId id : lifted) {
-        change.rays.objects[id.index()] |= RayChange::moved | RayChange::shadows;
-        change.rays.before_index[id.index()] = kNoNode;  // in no tree
-      }
-      change.any_moved = change.any_shadows = change.any_shadows || !lifted.empty();
-      const std::vector<Overlay> shown = std::exchange(overlays, {});
+      put_back_with(change);  // lights move with the selection, say: not the paper's kind of drag
+      const std::vector<ShownSamples> shown = std::exchange(on_top, {});
       lifted.clear();
       update(change, result, watch);
       for (std::size_t tile = 0; tile < shown.size(); ++tile) refresh_pixels(tile, shown[tile].samples, result);
-      finish(result, segments_before);
+      finish(result);
       return result;
     }
     const std::vector<TileUpdate> removed = remove_selection(change, result, watch);
     show_selection(removed, result, watch);
-    finish(result, segments_before);
+    finish(result);
     return result;
   }
 
@@ -260,7 +277,7 @@ struct Replayer::Impl {
     std::vector<ObjectId> all;
     std::ranges::set_union(lifted, selection_of(change), std::back_inserter(all));
     if (all.size() == lifted.size()) return {};
-    if (overlays.empty()) overlays.resize(image().trees.size());
+    if (on_top.empty()) on_top.resize(image().trees.size());
     for (ObjectId id : lifted) change.rays.objects[id.index()] = 0;  // not in any tree
     lifted = std::move(all);
     PassResult done = run(change, lifted, true, result, watch);
@@ -278,9 +295,12 @@ struct Replayer::Impl {
     const PassResult done = run(change, {}, false, result, watch);
     for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
       const TileUpdate& update = done.updates[tile];
-      const std::vector<std::uint32_t> shown = std::exchange(overlays[tile].samples, update.shaded);
-      overlays[tile].colors = update.colors;
-      if (!removed.empty()) refresh_pixels(tile, removed[tile].shaded, result);
+      const std::vector<std::uint32_t> shown = std::exchange(on_top[tile].samples, update.shaded);
+      on_top[tile].colors = update.colors;
+      if (!removed.empty()) {
+        result.counters.samples_affected -= common(removed[tile].shaded, update.shaded);
+        refresh_pixels(tile, removed[tile].shaded, result);
+      }
       refresh_pixels(tile, shown, result);
       refresh_pixels(tile, update.shaded, result);
     }
@@ -292,10 +312,9 @@ struct Replayer::Impl {
     StepResult result;
     StopWatch watch;
     result.counters.samples_total = stored.samples();
-    if (lifted.empty()) return result;
     StepChange change = put_back();
     lifted.clear();
-    overlays.clear();
+    on_top.clear();
     update(change, result, watch);
     return result;
   }

@@ -19,7 +19,7 @@ struct StepResult {
   Counters counters;
   Seconds seconds;                            // classify .. evaluate; write and total are the caller's
   std::vector<std::uint32_t> changed_pixels;  // indices into frame.pixels, increasing
-  std::vector<Leaves> dependent, touched;     // by tile: leaves whose paths the change reaches, whose tunnels it may touch
+  std::vector<Leaves> dependent, touched;  // by tile: leaves whose paths the change reaches, whose tunnels it may touch
 };
 
 class Replayer {

@@ -55,42 +55,40 @@ Json verify_json(const std::optional<VerifyResult>& verify) {
   return {{"pixels_compared", verify->pixels_compared}, {"pixels_different", verify->pixels_different}};
 }
 
-Json regions_json(const RegionCounters& regions) {
-  return {{"visited", regions.visited}, {"culled", regions.culled}};
-}
+Json regions_json(const RegionCounters& regions) { return {{"visited", regions.visited}, {"culled", regions.culled}}; }
 
 Json step_json(const StepReport& step) {
   const Counters& counters = step.counters;
-  return {{"step", step.step},
-          {"name", step.name},
-          {"class", change_class_name(step.change)},
-          {"reasons", step.reasons},
-          {"drag_frame", or_null(step.drag_frame)},
-          {"frame", step.frame},
-          {"frame_hash", step.frame_hash},
-          {"preview", step.preview},
-          {"samples_total", counters.samples_total},
-          {"samples_affected", counters.samples_affected},
-          {"pixels_changed", counters.pixels_changed},
-          {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
-          {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
-          {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
-          {"ray_tests", counters.ray_tests},
-          {"ray_tests_culled", counters.ray_tests_culled},
-          {"ray_tests_culled_by",
-           {{"tunnels", counters.culled_by_tunnels},
-            {"class", counters.ray_tests_culled - counters.culled_by_tunnels}}},
-          {"ray_updates", counters.ray_updates},
-          {"shadow_updates", counters.shadow_updates},
-          {"object_rays", counters.object_rays},
-          {"color_trees_evaluated", counters.color_trees_evaluated},
-          {"seconds", seconds_json(step.seconds)},
-          {"resident", resident_json(step.resident)},
-          {"evicted", no_residency_changes()},
-          {"rebuilt", no_residency_changes()},
-          {"reloaded", no_residency_changes()},
-          {"peak_rss", step.peak_rss_bytes},
-          {"verify", verify_json(step.verify)}};
+  return {
+      {"step", step.step},
+      {"name", step.name},
+      {"class", change_class_name(step.change)},
+      {"reasons", step.reasons},
+      {"drag_frame", or_null(step.drag_frame)},
+      {"frame", step.frame},
+      {"frame_hash", step.frame_hash},
+      {"preview", step.preview},
+      {"samples_total", counters.samples_total},
+      {"samples_affected", counters.samples_affected},
+      {"pixels_changed", counters.pixels_changed},
+      {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
+      {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
+      {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
+      {"ray_tests", counters.ray_tests},
+      {"ray_tests_culled", counters.ray_tests_culled},
+      {"ray_tests_culled_by",
+       {{"tunnels", counters.culled_by_tunnels}, {"class", counters.ray_tests_culled - counters.culled_by_tunnels}}},
+      {"ray_updates", counters.ray_updates},
+      {"shadow_updates", counters.shadow_updates},
+      {"object_rays", counters.object_rays},
+      {"color_trees_evaluated", counters.color_trees_evaluated},
+      {"seconds", seconds_json(step.seconds)},
+      {"resident", resident_json(step.resident)},
+      {"evicted", no_residency_changes()},
+      {"rebuilt", no_residency_changes()},
+      {"reloaded", no_residency_changes()},
+      {"peak_rss", step.peak_rss_bytes},
+      {"verify", verify_json(step.verify)}};
 }
 
 Json options_json(const RunReport& report) {

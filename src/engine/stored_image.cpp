@@ -12,11 +12,11 @@ namespace {
 bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
 
 /// `colors`: of the samples from `first` on.
-void put_on_top(const Overlay& overlay, std::uint32_t first, std::vector<Rgba>& colors) {
-  const auto found = std::ranges::lower_bound(overlay.samples, first);
-  for (auto k = static_cast<std::size_t>(found - overlay.samples.begin());
-       k < overlay.samples.size() && overlay.samples[k] < first + colors.size(); ++k)
-    colors[overlay.samples[k] - first] = overlay.colors[k];
+void put_on_top(const ShownSamples& shown, std::uint32_t first, std::vector<Rgba>& colors) {
+  const auto found = std::ranges::lower_bound(shown.samples, first);
+  for (auto k = static_cast<std::size_t>(found - shown.samples.begin());
+       k < shown.samples.size() && shown.samples[k] < first + colors.size(); ++k)
+    colors[shown.samples[k] - first] = shown.colors[k];
 }
 
 /// Puts the new trees of a tile in place of the old ones. `ids`: of the update's paths in the image's table.
@@ -46,6 +46,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
                          const RegionOptions& options)
     : image_(std::move(image)),
       lights_(std::move(lights)),
+      classes_(options.atoms > 0),
       atoms_(std::move(atoms)),
       regions_(options),
       tile_segments_(image_.trees.size(), 0),
@@ -57,6 +58,19 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
     samples_ += image_.trees[tile].paths.size();
   }
   regions_.build_groups(image_, class_of());
+}
+
+void StoredImage::set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene) {
+  if (atoms == atoms_) return;
+  atoms_ = std::move(atoms);
+  classify_paths(scene);
+}
+
+void StoredImage::classify_paths(const GrowScene& scene) {
+  classes_.clear();
+  index_paths();
+  regions_.build_groups(image_, class_of());
+  if (regions_.has_tunnels() && regions_.options().tunnels > 1) regions_.build_tunnels(image_, scene, class_of());
 }
 
 void StoredImage::index_paths() {
@@ -112,10 +126,7 @@ void StoredImage::drop_unused_paths(const GrowScene& scene) {
   image_.paths = std::move(used);
   compact_paths_ = image_.paths.size();
   index_.clear();
-  classes_.clear();
-  index_paths();
-  regions_.build_groups(image_, class_of());
-  if (regions_.has_tunnels() && regions_.options().tunnels > 1) regions_.build_tunnels(image_, scene, class_of());
+  classify_paths(scene);
 }
 
 void StoredImage::keep_colors(const std::vector<TileUpdate>& updates) {
@@ -124,7 +135,7 @@ void StoredImage::keep_colors(const std::vector<TileUpdate>& updates) {
       image_.sample_colors[tile][updates[tile].shaded[k]] = updates[tile].colors[k];
 }
 
-void StoredImage::refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const Overlay* overlay,
+void StoredImage::refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const ShownSamples* shown,
                                  std::vector<std::uint32_t>& changed_pixels) {
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
   const std::vector<Rgba>& stored = image_.sample_colors[tile];
@@ -136,7 +147,7 @@ void StoredImage::refresh_pixels(std::size_t tile, const std::vector<std::uint32
     last_pixel = pixel;
     const std::uint32_t first = pixel * image_.view.samples;
     std::copy_n(stored.begin() + first, image_.view.samples, colors.begin());
-    if (overlay != nullptr) put_on_top(*overlay, first, colors);
+    if (shown != nullptr) put_on_top(*shown, first, colors);
     const std::size_t place = frame_index(rect, pixel, image_.frame.width);
     const Rgba color = pixel_color(colors.data(), image_.view.samples);
     if (same_bits(color, image_.frame.pixels[place])) continue;

@@ -13,7 +13,7 @@
 namespace relook {
 
 /// Colours of single samples of a tile in place of the stored ones: those of an intermediate frame of a drag.
-struct Overlay {
+struct ShownSamples {
   std::vector<std::uint32_t> samples;  // increasing
   std::vector<Rgba> colors;
 };
@@ -31,8 +31,12 @@ class StoredImage {
   [[nodiscard]] std::uint64_t segments() const { return segments_; }
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
 
-  /// For scenes to which objects have been added.
-  void set_atoms(std::vector<ObjectId> atoms) { atoms_ = std::move(atoms); }
+  /// For objects that have been added. `atoms`: of all objects; the known ones keep theirs for now.
+  void extend_atoms(const std::vector<ObjectId>& atoms) {
+    atoms_.insert(atoms_.end(), atoms.begin() + std::ssize(atoms_), atoms.end());
+  }
+  /// After a change, perhaps of the node hierarchy. `scene`: in which the trees hold.
+  void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene);
   /// Requires: the trees hold in `scene`.
   void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
 
@@ -40,9 +44,9 @@ class StoredImage {
   /// they hold. `lights_changed`: all samples have been packed anew, since the form of paths follows the light order.
   void keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
   void keep_colors(const std::vector<TileUpdate>& updates);
-  /// Works the pixels of some samples of a tile out again, appends those that differ to `changed_pixels`. `overlay`:
+  /// Works the pixels of some samples of a tile out again, appends those that differ to `changed_pixels`. `shown`:
   /// may be null.
-  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const Overlay* overlay,
+  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const ShownSamples* shown,
                       std::vector<std::uint32_t>& changed_pixels);
 
  private:
@@ -51,6 +55,7 @@ class StoredImage {
     return [this](PathId path) { return classes_.of(path); };
   }
   void index_paths();
+  void classify_paths(const GrowScene& scene);
   void count_segments(std::size_t tile);
   void drop_unused_paths(const GrowScene& scene);
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;

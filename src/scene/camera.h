@@ -10,13 +10,13 @@
 namespace relook {
 
 struct Camera {
-  std::string name;              // of the camera or its node; "auto"; the command line's own words otherwise
-  std::string node;              // look-document node it hangs on, "" when given by eye, target and angle
+  std::string name;  // of the camera or its node; "auto"; the command line's own words otherwise
+  std::string node;  // look-document node it hangs on, "" when given by eye, target and angle
   bool orthographic = false;
   Point eye{0, 0, 0};
   Direction right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};  // unit, orthogonal
   float half_width = 1, half_height = 1;  // of the image plane at distance 1 (perspective), in metres (orthographic)
-  float near = 0;                // metres along forward: nothing nearer is seen
+  float near = 0;                         // metres along forward: nothing nearer is seen
   std::uint32_t width = 0, height = 0;    // pixels
 };
 

@@ -54,6 +54,7 @@ struct RayChange {
   std::vector<std::uint32_t> before_index;         // by ObjectId, into `before`
   Tracer::TopLevel moved_after;                    // moved objects where they are now
   Tracer::TopLevel shadows_before, shadows_after;  // objects with flag `shadows`
+  SelectionBounds bounds;                          // of these three
   std::vector<LightId> old_lights;                 // light order of the stored trees
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
   bool lights_changed = false;                     // any light added, deleted, moved or reordered

@@ -37,9 +37,10 @@ class Prober {
 
  private:
   [[nodiscard]] bool meets(const RayNode& node) {
-    ++counters_.ray_tests;
     Ray segment{node.ray.origin, node.ray.direction};
     if (!node.object.is_none()) segment.t_max = node.length + distance_slack(node, g_.scene.object(node.object));
+    if (!is_near(change_.bounds.moved, segment)) return false;
+    ++counters_.ray_tests;
     return !Tracer::intersect(change_.moved_after, segment).object.is_none();
   }
 
@@ -52,11 +53,17 @@ class Prober {
       if (state == ShadowState::facing_away || (may_change & light_bit(light)) == 0) continue;
       const ShadowSegment segment = shadow_segment(node.point, g_.scene.scene().light(lights[light]));
       const Ray ray{segment.origin, segment.direction, segment.t_max};
+      const bool before = is_blocked && is_near(change_.bounds.shadows_before, ray);
+      const bool after = (!is_blocked || g_.shadow_bits > 0) && is_near(change_.bounds.shadows_after, ray);
+      if (!before && !after) continue;
       ++counters_.ray_tests;
-      if (is_blocked && crosses(change_.shadows_before, ray)) return true;
-      if ((!is_blocked || g_.shadow_bits > 0) && crosses(change_.shadows_after, ray)) return true;
+      if (before && crosses(change_.shadows_before, ray)) return true;
+      if (after && crosses(change_.shadows_after, ray)) return true;
     }
     return false;
+  }
+  [[nodiscard]] bool is_near(const Box& box, const Ray& ray) const {
+    return may_meet(box, change_.bounds.condition, ray.origin, ray.direction, ray.t_max);
   }
   [[nodiscard]] bool crosses(const Tracer::TopLevel& selection, const Ray& ray) {
     return !Tracer::passes(selection, ray, crossings_) || !crossings_.empty();

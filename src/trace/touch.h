@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/math.h"
 #include "trace/ray_path.h"
 
 namespace relook {
@@ -18,7 +19,7 @@ inline constexpr History kEye = 0, kPrimary = 1;
   return child < (1U << 28) ? child : parent;
 }
 [[nodiscard]] inline History parent_of(History history) { return (history - 1) / 4; }
-[[nodiscard]] inline bool is_folded(History history) { return child_of(history, Branch::reflection) == history; }
+[[nodiscard]] inline bool is_folded(History history) { return child_of(history, Branch::transparency) == history; }
 
 /// A bit for a place in the light order; all from the 32nd on share the last.
 [[nodiscard]] inline std::uint32_t light_bit(std::size_t light) { return 1U << (light < 31 ? light : 31); }
@@ -32,6 +33,16 @@ struct Touch {
 };
 /// Increasing by history; a touch of a section comes with those of its ancestors.
 using Touches = std::vector<Touch>;
+
+/// Boxes around a selection, widened by the rounding of its own coordinates, and how much its placement stretches
+/// rounding: with them a single segment is ruled out before it costs a ray test.
+struct SelectionBounds {
+  Box moved, shadows_before, shadows_after;  // as the top levels of RayChange
+  float condition = 1;
+};
+/// May the segment from `origin` along `direction`, as far as t_max, meet something in the box? Errs to true.
+[[nodiscard]] bool may_meet(const Box& box, float condition, const Point& origin, const Direction& direction,
+                            float t_max);
 
 /// The touch of a history, or null.
 [[nodiscard]] inline const Touch* touch_of(const Touches& touches, History history) {

@@ -122,7 +122,11 @@ float distance_slack(const RayNode& node, const RayObject& object) {
   const Point& o = node.ray.origin;
   const float coordinates = std::fabs(o.x) + std::fabs(o.y) + std::fabs(o.z);
   const float cosine = std::fmax(-node.ray.direction.dot(node.point.geometric), 1e-4F);
-  return (kUlps * (node.length + coordinates) + 8 * node.point.offset) * object.condition / cosine;
+  // On long thin triangles rounded barycentrics move the point along the triangle: it lies that far beside the ray.
+  const Direction way = node.point.position - o;
+  const Direction beside = way - node.ray.direction * way.dot(node.ray.direction);
+  const float known = (kUlps * (node.length + coordinates) + 8 * node.point.offset) * object.condition;
+  return (known + 2 * std::sqrt(beside.dot(beside))) / cosine;
 }
 
 ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light) {

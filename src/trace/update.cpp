@@ -44,6 +44,11 @@ class Updater {
     return touch != nullptr ? *touch : Touch{history, false, false, 0, 0};
   }
 
+  /// Rules single segments out like tunnels do, where there are tunnels.
+  [[nodiscard]] bool is_near(const Box& box, const Ray& ray) const {
+    return touches_ == nullptr || may_meet(box, change_.bounds.condition, ray.origin, ray.direction, ray.t_max);
+  }
+
   std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent) {
     const std::uint32_t index = grower_.trace(ray, parent, counters_);
     grower_.trace_lights(index, counters_);
@@ -54,13 +59,14 @@ class Updater {
   bool test(std::uint32_t index, const PathNode& node) {
     TreeBlock& block = grower_.block();
     const SpawnedRay ray = block.nodes[index].ray;
-    ++counters_.ray_tests;
     Ray segment{ray.origin, ray.direction};
     float slack = 0;
     if (!node.is_miss()) {
       slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object()));
       segment.t_max = block.nodes[index].length + slack;
     }
+    if (!is_near(change_.bounds.moved, segment)) return false;
+    ++counters_.ray_tests;
     const Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
     if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
@@ -128,6 +134,11 @@ class Updater {
       keep(index, light, segment, before, old);
       return;
     }
+    const Ray ray{segment.origin, segment.direction, segment.t_max};
+    const bool is_blocked = before == ShadowState::blocked;
+    touched =
+        touched && ((is_blocked && is_near(change_.bounds.shadows_before, ray)) ||
+                    ((!is_blocked || grower_.grow().shadow_bits > 0) && is_near(change_.bounds.shadows_after, ray)));
     if (!touched) {  // transparent surfaces of the selection may have stood there: the path names them
       grower_.crossings_.clear();
       before == ShadowState::filtered ? update_filters(index, light, segment, before, old)

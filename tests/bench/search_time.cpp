@@ -50,7 +50,7 @@ SearchTimes SearchTimer::next(const Replayer& replayer, const Edit& edit, const 
   const std::vector<LightId> lights = state_.scene().light_order;
   RayScene rays(state_.scene());
   PathIndex index;
-  PathClasses classes;
+  PathClasses classes(false);
   index.extend(image.paths, {lights.size(), image.view.shadow_bits});
   classes.extend(image.paths, {lights.size(), image.view.shadow_bits}, {});
   const SceneDelta delta = apply_edit(state_, edit, journal.file, journal.path.parent_path());
