@@ -118,7 +118,7 @@ ImageRegions fresh_regions(const Replayer& replayer) {
 std::size_t stale_tiles(const Replayer& replayer) {
   const ImageRegions fresh = fresh_regions(replayer);
   const ImageRegions& kept = replayer.regions();
-  std::size_t stale = 0;
+  std::size_t stale = kept.has_tunnels() && !(fresh.image_tunnels() == kept.image_tunnels()) ? 1 : 0;
   for (std::size_t tile = 0; tile < replayer.image().trees.size(); ++tile) {
     const bool same_groups = !fresh.has_groups() || fresh.groups(tile) == kept.groups(tile);
     const bool same_tunnels = !kept.has_tunnels() || fresh.tunnels(tile) == kept.tunnels(tile);

@@ -71,6 +71,19 @@ void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, cons
     tunnels_[tile] =
         TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
   });
+  const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
+  image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
+                                 [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
+}
+
+void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const {
+  for (std::size_t k = 0; k < tunnels_[tile].count(kRoot); ++k)
+    enclose(tunnel, tunnels_[tile].tunnel(kRoot, k).sections);
+}
+
+void ImageRegions::update_image(const std::vector<std::size_t>& tiles) {
+  if (!has_tunnels()) return;
+  image_tunnels_.update(tiles, [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
 }
 
 void ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
@@ -89,7 +102,7 @@ std::size_t ImageRegions::group_bytes() const {
 }
 
 std::size_t ImageRegions::tunnel_bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = image_tunnels_.bytes();
   for (const TileTunnels& tunnels : tunnels_) sum += tunnels.bytes();
   return sum;
 }

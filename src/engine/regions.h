@@ -6,6 +6,7 @@
 #include "engine/image.h"
 #include "region/path_groups.h"
 #include "region/tile_tunnels.h"
+#include "region/tunnel_pyramid.h"
 #include "trace/grow.h"
 
 namespace relook {
@@ -30,20 +31,29 @@ class ImageRegions {
   [[nodiscard]] bool has_tunnels() const { return !tunnels_.empty(); }
 
   /// After the trees of some leaves of a tile have changed: its groups and, if there are any, its tunnels. Tiles may be
-  /// updated at the same time.
+  /// updated at the same time; update_image() with all of them follows.
   void update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
               const ClassOf& class_of);
 
+  void update_image(const std::vector<std::size_t>& tiles);
+
+  /// By tile: may the change touch its tunnels? Requires has_tunnels().
+  [[nodiscard]] std::vector<bool> find_tiles(const TunnelTest& test, RegionCounters& counters) const {
+    return image_tunnels_.find(test, counters);
+  }
+  [[nodiscard]] const TunnelPyramid& image_tunnels() const { return image_tunnels_; }
   [[nodiscard]] const PathGroups& groups(std::size_t tile) const { return groups_[tile]; }
   [[nodiscard]] const TileTunnels& tunnels(std::size_t tile) const { return tunnels_[tile]; }
   [[nodiscard]] std::size_t group_bytes() const;
   [[nodiscard]] std::size_t tunnel_bytes() const;
 
  private:
+  void enclose_tile(std::size_t tile, Sections& tunnel) const;
   [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const;
   RegionOptions options_;
   std::vector<PathGroups> groups_;
   std::vector<TileTunnels> tunnels_;
+  TunnelPyramid image_tunnels_;
 };
 
 }  // namespace relook

@@ -111,6 +111,8 @@ struct Replayer::Impl {
       change.rays.bounds = {boxes.moved.all, boxes.shadows_before.all, boxes.shadows_after.all, boxes.condition};
     }
     const TunnelTest tunnel_test{boxes, ends};
+    std::vector<bool> near_tiles;
+    if (uses_tunnels) near_tiles = stored.regions().find_tiles(tunnel_test, result.counters.by_tunnels);
     const UpdatePass pass{image(),
                           stored.lights(),
                           scene,
@@ -119,6 +121,7 @@ struct Replayer::Impl {
                           stored.classes(),
                           stored.regions(),
                           uses_tunnels ? &tunnel_test : nullptr,
+                          near_tiles,
                           known_leaves,
                           programs,
                           keeps_trees};
@@ -133,16 +136,16 @@ struct Replayer::Impl {
       done.updates[tiles[i]] = update_tile(pass, tiles[i], done.works[tiles[i]], shaders);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-    count(done, result);
+    count(done, uses_tunnels, result);
     std::vector<Leaves> leaves;
     for (const TileWork& work : done.works) leaves.push_back(work.by_path);
     selection.keep(change, std::move(tasks), std::move(leaves));
     return done;
   }
 
-  void count(const PassResult& done, StepResult& result) const {
+  void count(const PassResult& done, bool uses_tunnels, StepResult& result) const {
     Counters& counters = result.counters;
-    std::uint64_t tests = 0, tunnel_visits = 0;
+    std::uint64_t tests = 0;
     result.dependent.resize(done.works.size());
     result.touched.resize(done.works.size());
     for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
@@ -154,7 +157,6 @@ struct Replayer::Impl {
       counters.samples_affected += update.shaded.size();
       counters.color_trees_evaluated += update.shaded.size();
       tests += update.counters.ray_tests;
-      tunnel_visits += work.by_tunnels.visited;
       counters.ray_updates += update.counters.ray_updates;
       counters.shadow_updates += update.counters.shadow_updates;
       counters.by_groups += work.by_groups;
@@ -163,7 +165,7 @@ struct Replayer::Impl {
     require(tests <= stored.segments(), "each stored segment is tested once at most");
     counters.ray_tests += tests;
     counters.ray_tests_culled += stored.segments() - tests;
-    if (tunnel_visits > 0) counters.culled_by_tunnels += stored.segments() - tests;
+    if (uses_tunnels) counters.culled_by_tunnels += stored.segments() - tests;
   }
 
   /// Applies the edit to the scene and finds what it means.

@@ -101,6 +101,10 @@ void StoredImage::keep_trees(const std::vector<TileUpdate>& updates, const GrowS
     count_segments(tile);
     regions_.update(image_, scene, tile, leaves_of(tile, updates[tile].packed), class_of());
   });
+  std::vector<std::size_t> changed;
+  for (std::size_t tile = 0; tile < updates.size(); ++tile)
+    if (!updates[tile].packed.empty()) changed.push_back(tile);
+  regions_.update_image(changed);
   segments_ = 0;
   for (std::uint64_t count : tile_segments_) segments_ += count;
   if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene);

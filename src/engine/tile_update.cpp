@@ -126,7 +126,7 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
       work.by_path.set();
   }
   work.leaves = work.by_path;
-  if (pass.change.touches_segments()) {
+  if (pass.change.touches_segments() && pass.near_tiles[tile]) {
     find_touched_leaves(pass.regions.tunnels(tile), *pass.tunnel_test, work.touched, work.by_tunnels);
     for (const LeafTouches& leaf : work.touched) work.leaves.set(leaf.leaf);
   }

@@ -41,6 +41,7 @@ struct UpdatePass {
   const PathClasses& classes;
   const ImageRegions& regions;
   const TunnelTest* tunnel_test = nullptr;            // null: without tunnels, every segment is tested
+  const std::vector<bool>& near_tiles;                // with tunnels: those that the change may touch
   const std::vector<Leaves>* known_leaves = nullptr;  // by tile, those that paths tell; null: to be found
   ProgramTable& programs;
   bool keeps_trees = true;  // false: an intermediate frame of a drag
