@@ -7,6 +7,7 @@
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 
+#include <atomic>
 #include <memory>
 
 namespace relook {
@@ -35,16 +36,41 @@ void set_float_mode() {
 
 std::size_t thread_count() { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); }
 
+namespace {
+
+/// The meeting of threads before and after a loop. It is TBB's business; but the thread sanitizer does not see into
+/// Debian's TBB, so in its builds an atomic says the same once more.
+class Meeting {
+ public:
+#if defined(__SANITIZE_THREAD__)
+  void pass_on() { passed_.fetch_add(1, std::memory_order_release); }
+  void take_over() { static_cast<void>(passed_.load(std::memory_order_acquire)); }
+
+ private:
+  std::atomic<int> passed_ = 0;
+#else
+  void pass_on() {}
+  void take_over() {}
+#endif
+};
+
+}  // namespace
+
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain) {
   // Embree changes the treatment of denormal numbers, and TBB hands the mode of whoever came first on to its threads:
   // every body gets ours, whatever ran before.
   set_float_mode();
   tbb::task_group_context context(tbb::task_group_context::isolated,
                                   tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
+  Meeting before, after;
   const auto run = [&](const auto& range) {
+    before.take_over();
     for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+    after.pass_on();
   };
+  before.pass_on();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), run, context);
+  after.take_over();
 }
 
 }  // namespace relook
