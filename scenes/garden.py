@@ -8,7 +8,7 @@ import shapes
 import statue
 from gltf import Gltf, quaternion, rounded
 
-TREES, LEAVES_PER_TREE = 60, 275
+TREES, LEAVES_PER_TREE = 60, 275  # the usual garden; generate.py takes another number of leaves
 CAMERA_EYE, CAMERA_TARGET = (0.0, 3.4, 15.0), (0.0, 1.75, 0.0)
 
 
@@ -82,7 +82,7 @@ def _tree_places(generator):
     return places
 
 
-def _add_tree(gltf, generator, place, leaf, trunk):
+def _add_tree(gltf, generator, place, leaf, trunk, leaves):
     name, x, z, size = place
     color = ((0.10, 0.34, 0.06) if name == "Left" else
              (generator.uniform(0.08, 0.30), generator.uniform(0.26, 0.42), generator.uniform(0.03, 0.10)))
@@ -91,7 +91,7 @@ def _add_tree(gltf, generator, place, leaf, trunk):
     tree = gltf.add_node("Tree" + name, translation=rounded([x, 0.0, z], 3), scale=rounded([size] * 3, 3),
                          rotation=quaternion((0, 1, 0), generator.uniform(0, 2 * math.pi)))
     gltf.add_node("Trunk" + name, parent=tree, mesh=trunk)
-    for k in range(LEAVES_PER_TREE):
+    for k in range(leaves):
         height = generator.uniform(-1, 1)
         angle = generator.uniform(0, 2 * math.pi)
         radius = generator.uniform(0.25, 1.0) ** 0.5
@@ -142,8 +142,8 @@ def _add_boat(gltf, materials):
         gltf.add_node(name, parent=boat, mesh=mesh, translation=move)
 
 
-def write(folder):
-    """Writes FOLDER/garden.gltf and garden.bin."""
+def write(folder, leaves=LEAVES_PER_TREE):
+    """Writes FOLDER/garden.gltf and garden.bin. `leaves`: of each of the sixty trees."""
     generator = random.Random(1996)
     gltf = Gltf("garden")
     materials = _materials(gltf)
@@ -167,7 +167,7 @@ def write(folder):
                       scale=[place[1]] * 3)
     leaf, trunk = gltf.add_geometry(_leaf()), mesh("Trunk", _trunk(), "Bark")
     for place in _tree_places(generator):
-        _add_tree(gltf, generator, place, leaf, trunk)
+        _add_tree(gltf, generator, place, leaf, trunk, leaves)
     gltf.add_light("Sun", "directional", [1.0, 0.94, 0.82], 2.6, rotation=quaternion((-0.9, -0.55, -0.2), 1.0))
     gltf.add_light("Sky", "directional", [0.65, 0.78, 1.0], 0.7, rotation=quaternion((-0.9, 0.6, 0.2), 1.1))
     gltf.add_light("Lantern", "point", [1.0, 0.85, 0.6], 30.0, translation=[1.5, 4.5, 6.0])

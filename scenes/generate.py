@@ -1,6 +1,7 @@
 """Writes the scenes of this folder and the files that the journals add to them.
 
 usage: python3 generate.py spheres|garden|journal-files FOLDER
+       python3 generate.py garden FOLDER LEAVES    another number of leaves a tree than 275
 
 Standard library only; the same bytes in every run.
 """
@@ -32,8 +33,11 @@ def write_journal_files(folder):
 
 def main(arguments):
     writers = {"spheres": spheres.write, "garden": garden.write, "journal-files": write_journal_files}
+    if len(arguments) == 3 and arguments[0] == "garden" and arguments[2].isdigit():
+        garden.write(arguments[1], int(arguments[2]))
+        return 0
     if len(arguments) != 2 or arguments[0] not in writers:
-        print("usage: python3 generate.py %s FOLDER" % "|".join(writers), file=sys.stderr)
+        print("usage: python3 generate.py %s FOLDER, or garden FOLDER LEAVES" % "|".join(writers), file=sys.stderr)
         return 1
     writers[arguments[0]](arguments[1])
     return 0
