@@ -50,11 +50,12 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--memory", raw.memory, std::string("Budget in bytes, like 2G") + kRecorded);
   verb.add_option("--ray-trees", raw.ray_trees, std::string("Percentage of ray trees kept") + kRecorded);
   verb.add_option("--color-trees", raw.color_trees, std::string("Percentage of colour trees kept") + kRecorded);
-  verb.add_option("--tunnels", structures.tunnels, "Most tunnels of a region, the last for all further paths; 0: none")
+  verb.add_option("--tunnels", structures.tunnels,
+                  "Replay: most tunnels of a region, the last for all further paths; 0: none")
       ->check(CLI::Range(0, 16));
-  verb.add_option("--groups", structures.groups, "Most paths of a group; 0: none")->check(CLI::Range(0, 64));
+  verb.add_option("--groups", structures.groups, "Replay: most paths of a group; 0: none")->check(CLI::Range(0, 64));
   verb.add_option("--atoms", structures.atoms,
-                  "Depth of the node hierarchy at which nodes count as one object for groups; 0: none")
+                  "Replay: depth of the node hierarchy at which nodes count as one object for groups; 0: none")
       ->check(CLI::Range(0, 64));
   verb.add_option("--shadow-bits", arguments.shadow_bits, "Bits of a shadow counter, fixed by preprocess; 0: a flag")
       ->check(CLI::Range(0, 4));

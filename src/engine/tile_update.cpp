@@ -39,7 +39,6 @@ class TileUpdater {
 
  private:
   void update_sample(std::uint32_t sample, std::uint32_t leaf) {
-    static const Touches kNoTouches;
     const PathId path = trees_.paths[sample];
     const std::uint8_t task = p_.tasks.of_path[path.index()];
     const Touches* touches = by_leaf_[leaf] != nullptr ? by_leaf_[leaf]->of(p_.classes.of(path)) : nullptr;
@@ -56,7 +55,7 @@ class TileUpdater {
     bool changed = false;
     std::uint32_t root = 0;
     if (update) {
-      const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &kNoTouches;
+      const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &no_touches_;
       root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
       last_changed_.set(leaf, changed);
     } else {
@@ -103,6 +102,7 @@ class TileUpdater {
   PrimaryRays primaries_;
   Shader& shader_;
   std::array<const LeafTouches*, kLeaves> by_leaf_{};
+  const Touches no_touches_;
   Leaves last_changed_;  // leaves whose last updated tree has changed
   TreeBlock block_;
   std::vector<std::uint32_t> roots_, words_;
