@@ -191,6 +191,7 @@ struct Replayer::Impl {
     StepChange change = begin(edit, file, folder, result);
     watch.lap(result.seconds.classify);
     update(change, result, watch);
+    finish(result);
     return result;
   }
 
@@ -201,7 +202,7 @@ struct Replayer::Impl {
     stored.refresh_pixels(tile, samples, on_top.empty() ? nullptr : &on_top[tile], result.changed_pixels);
   }
 
-  /// Brings trees, colours and frame up to date with the scene.
+  /// Brings trees, colours and frame up to date with the scene; finish() follows.
   void update(StepChange& change, StepResult& result, StopWatch& watch) {
     if (change.touches_rays() || !change.colors.empty()) {
       const PassResult done = run(change, {}, true, result, watch);
@@ -212,7 +213,6 @@ struct Replayer::Impl {
         refresh_pixels(tile, done.updates[tile].shaded, result);
       watch.lap(result.seconds.evaluate);
     }
-    finish(result);
   }
 
   void finish(StepResult& result) {
@@ -318,6 +318,7 @@ struct Replayer::Impl {
     lifted.clear();
     on_top.clear();
     update(change, result, watch);
+    finish(result);
     return result;
   }
 };

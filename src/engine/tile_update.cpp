@@ -23,7 +23,6 @@ class TileUpdater {
   TileUpdate update(const TileWork& work) {
     const std::uint32_t width = rect_.x1 - rect_.x0, height = rect_.y1 - rect_.y0;
     const std::uint32_t samples = p_.image.view.samples;
-    by_leaf_.fill(nullptr);
     for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
     for (std::uint32_t y = 0; y < height; ++y)
       for (std::uint32_t column = 0; column * kLeafSize < width; ++column) {

@@ -15,7 +15,7 @@ namespace relook {
 struct TileWork {
   Leaves leaves;                     // with samples that the change may reach
   Leaves by_path;                    // of these, what the paths tell
-  std::vector<LeafTouches> touched;  // of these, what tunnels tell about their segments; increasing by leaf
+  std::vector<LeafTouches> touched;  // of these, what tunnels tell about their segments
   RegionCounters by_groups, by_tunnels;
 };
 

@@ -31,7 +31,6 @@ class TunnelSet {
   Sections& collecting();
   std::size_t most_;
   std::vector<Tunnel> tunnels_;  // a collecting one stands last
-  friend class TileTunnels;
 };
 
 class TileTunnels {
