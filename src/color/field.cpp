@@ -3,6 +3,25 @@
 #include <cmath>
 
 namespace relook {
+namespace {
+
+FieldMask changed_fields(const TextureSlot& a, const TextureSlot& b, Slot slot) {
+  if (a == b) return 0;
+  FieldMask mask = 0;
+  if (a.mapping != b.mapping || a.axis != b.axis || a.texcoord != b.texcoord) mask |= kMappingMask;
+  if (a.procedural.color1 != b.procedural.color1 || a.procedural.color2 != b.procedural.color2)
+    mask |= color_mask_of(slot);
+  TextureSlot same = a;
+  same.mapping = b.mapping;
+  same.axis = b.axis;
+  same.texcoord = b.texcoord;
+  same.procedural.color1 = b.procedural.color1;
+  same.procedural.color2 = b.procedural.color2;
+  if (same != b) mask |= mask_of(slot);
+  return mask;
+}
+
+}  // namespace
 
 FieldMask changed_fields(const Material& a, const Material& b) {
   FieldMask mask = 0;
@@ -35,8 +54,7 @@ FieldMask changed_fields(const Material& a, const Material& b) {
   note(Field::reflection, a.reflection != b.reflection);
   note(Field::refraction, a.refraction != b.refraction);
   note(Field::transparency, a.transparency != b.transparency);
-  for (std::size_t s = 0; s < kSlotCount; ++s)
-    if (a.slots[s] != b.slots[s]) mask |= mask_of(static_cast<Slot>(s));
+  for (std::size_t s = 0; s < kSlotCount; ++s) mask |= changed_fields(a.slots[s], b.slots[s], static_cast<Slot>(s));
   return mask;
 }
 
@@ -101,6 +119,11 @@ float field_value(const Material& m, Field field, unsigned component) {
       break;
   }
   return 0;
+}
+
+float slot_color(const TextureSlot& slot, unsigned component) {
+  const Procedural& texture = slot.procedural;
+  return component < 3 ? texture.color1[static_cast<int>(component)] : texture.color2[static_cast<int>(component - 3)];
 }
 
 float field_value(const Light& light, LightField field) {

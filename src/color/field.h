@@ -7,7 +7,8 @@
 
 namespace relook {
 
-/// Fields of a material. The texture slots follow as kFirstSlotField + slot.
+/// Fields of a material. What is looked up in the texture slots follows as kFirstSlotField + slot, the colours of
+/// procedural textures as kFirstSlotColor + slot, and last where textures are looked up: one bit for all slots.
 enum class Field : std::uint8_t {
   model,
   alpha_mode,
@@ -40,18 +41,26 @@ enum class Field : std::uint8_t {
   count
 };
 inline constexpr unsigned kFirstSlotField = static_cast<unsigned>(Field::count);
-static_assert(kFirstSlotField + kSlotCount <= 64);
+inline constexpr unsigned kFirstSlotColor = kFirstSlotField + static_cast<unsigned>(kSlotCount);
+inline constexpr unsigned kMappingField = kFirstSlotColor + static_cast<unsigned>(kSlotCount);
+static_assert(kMappingField < 64);
 
 using FieldMask = std::uint64_t;
 [[nodiscard]] constexpr FieldMask mask_of(Field field) { return FieldMask{1} << static_cast<unsigned>(field); }
 [[nodiscard]] constexpr FieldMask mask_of(Slot slot) {
   return FieldMask{1} << (kFirstSlotField + static_cast<unsigned>(slot));
 }
+[[nodiscard]] constexpr FieldMask color_mask_of(Slot slot) {
+  return FieldMask{1} << (kFirstSlotColor + static_cast<unsigned>(slot));
+}
+inline constexpr FieldMask kMappingMask = FieldMask{1} << kMappingField;
 
 /// Fields whose values differ.
 [[nodiscard]] FieldMask changed_fields(const Material& a, const Material& b);
 /// Component `component` of a numeric field (scalars: component 0).
 [[nodiscard]] float field_value(const Material& material, Field field, unsigned component);
+/// Component of a procedural texture's color1 (0..2) or color2 (3..5).
+[[nodiscard]] float slot_color(const TextureSlot& slot, unsigned component);
 
 /// Numbers of a light: colour parameters and placement.
 enum class LightField : std::uint8_t {
@@ -70,5 +79,7 @@ enum class LightField : std::uint8_t {
   dz
 };
 [[nodiscard]] float field_value(const Light& light, LightField field);
+/// True for the colour parameters: the rest is placement.
+[[nodiscard]] constexpr bool is_color(LightField field) { return field < LightField::x; }
 
 }  // namespace relook

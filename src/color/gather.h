@@ -7,18 +7,18 @@
 namespace relook {
 
 /// Some nodes or filters of a block.
-struct Batch {
+struct Gathering {
   const RayScene& scene;
   const TreeBlock& block;
   bool are_filters = false;
   std::span<const std::uint32_t> indices;  // at most kLanes
 };
 
-/// Fills out[lane] with an input (payload: Input | detail << 8).
-void gather(std::uint32_t payload, const Batch& batch, const BlockColors& colors, Column& out);
+/// Fills out[lane] with an input.
+void gather(std::uint32_t payload, const Gathering& from, const BlockColors& colors, float* out);
 /// Op::coordinates: four columns.
-void gather_coordinates(const TextureSlot& slot, const Batch& batch, Column* out);
+void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out);
 /// Op::tangent_frame: six columns.
-void gather_tangent_frames(const TextureSlot& slot, const Batch& batch, Column* out);
+void gather_tangent_frames(const TextureSlot& slot, const Gathering& from, Column* out);
 
 }  // namespace relook

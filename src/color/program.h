@@ -7,61 +7,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "color/expression_code.h"
 #include "color/field.h"
 
 namespace relook {
-
-enum class Op : std::uint8_t {
-  // leaves
-  constant,        // payload: bits of a float
-  material_field,  // payload: Field | component << 8
-  light_field,     // payload: LightField | light index << 8
-  ambient,         // payload: component
-  environment,     // payload: component of color * intensity
-  input,           // payload: Input | detail << 8
-  // functions of one, two, three values
-  sqrt,
-  exp2,
-  log2,
-  add,
-  subtract,
-  multiply,
-  divide,
-  min,
-  max,
-  if_positive,   // a > 0 ? b : c
-  sheen_albedo,  // (cosine, roughness)
-  // lookups: several results in consecutive registers (see `channel`)
-  coordinates,      // payload: slot; per-sample constants: x, y, z, area ratio
-  tangent_frame,    // payload: slot; per-sample constants: tangent, bitangent
-  texture,          // payload: slot; (x, y, z, area ratio, footprint) to RGBA
-  environment_map,  // direction (x, y, z) to RGBA
-  channel,          // payload: which result of the lookup given as operand; result 0 is the lookup itself
-};
-
-/// Per-sample constants of a node, gathered from its hit.
-enum class Input : std::uint8_t {
-  position,
-  normal,
-  geometric,
-  view,          // these four: detail is the axis
-  vertex_color,  // detail: channel
-  footprint,
-  length_inside,
-  child,         // detail: channel | branch << 4
-  child_length,  // detail: branch
-  tint,          // detail: channel | index in the light order << 4
-};
-
-/// A value of an expression: an index into ColorProgram::code while building.
-using Value = std::uint32_t;
-
-struct Instruction {
-  Op op = Op::constant;
-  std::uint32_t payload = 0;
-  std::array<Value, 5> operands{};
-  bool operator==(const Instruction&) const = default;
-};
 
 struct InstructionHash {
   std::size_t operator()(const Instruction& instruction) const {
@@ -83,7 +32,7 @@ struct MaterialStructure {
   IlluminationModel model = IlluminationModel::metallic_roughness;
   AlphaMode alpha_mode = AlphaMode::opaque;
   bool transmits = false, thick = false, sheen = false, clearcoat = false;  // the value is not zero
-  std::uint16_t textures = 0;                                               // bit per Slot: there is one
+  std::uint16_t textures = 0, procedurals = 0;                              // bit per Slot: there is one; procedural
   auto operator<=>(const MaterialStructure&) const = default;
 };
 static_assert(kSlotCount <= 16);
@@ -104,8 +53,9 @@ class ExpressionBuilder {
   [[nodiscard]] Value environment(unsigned component);
   [[nodiscard]] Value input(Input input, unsigned detail = 0);
   [[nodiscard]] Value apply(Op op, Value a, Value b = 0, Value c = 0);
+  /// One channel of what a texture slot holds. Requires has_texture(slot).
+  [[nodiscard]] Value texel(Slot slot, unsigned channel);
   /// First result of a lookup; channel(lookup, k) gives the others.
-  [[nodiscard]] Value texture(Slot slot);
   [[nodiscard]] Value tangent_frame(Slot slot);
   [[nodiscard]] Value environment_map(Value x, Value y, Value z);
   [[nodiscard]] Value channel(Value lookup, unsigned channel);
@@ -117,39 +67,33 @@ class ExpressionBuilder {
   }
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
-  [[nodiscard]] const std::vector<Instruction>& code() const { return code_; }
+  [[nodiscard]] const Code& code() const { return code_; }
   [[nodiscard]] const Dependencies& dependencies() const { return dependencies_; }
 
  private:
   static constexpr std::size_t kUsualLength = 512;
 
   const MaterialStructure& note(FieldMask mask);
+  /// The operands of a lookup: where to look.
+  [[nodiscard]] Instruction lookup_at(Op op, Slot slot);
+  [[nodiscard]] Value procedural_channel(Slot slot, unsigned channel);
   Value emit(const Instruction& instruction);
   [[nodiscard]] bool is_constant(Value value, float* number) const;
 
   const Scene& scene_;
   MaterialStructure structure_;
-  std::vector<Instruction> code_;
+  Code code_;
   std::unordered_map<Instruction, Value, InstructionHash> known_;
   Dependencies dependencies_;
 };
 
-/// A finished program: straight-line code over registers, uniform part first.
+/// A finished program: the expression, and the same ready to run.
 struct ColorProgram {
-  struct Step {
-    Op op;
-    std::uint32_t payload;
-    std::uint16_t out;
-    std::array<std::uint16_t, 5> in;
-  };
-  std::vector<Step> uniform;  // run once per batch: constants, parameters and what follows from them alone
-  std::vector<Step> varying;  // run over all lanes
-  std::uint16_t registers = 0;
-  std::array<std::uint16_t, 4> result{};  // registers of R, G, B, A
+  Code code;
+  std::array<Value, 4> result{};  // R, G, B, A
+  Kernel kernel;                  // outputs: R, G, B, A
   Dependencies dependencies;
 };
-
-/// Drops what `result` does not need, splits uniform from varying code, assigns registers.
 [[nodiscard]] ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result);
 
 }  // namespace relook

@@ -24,7 +24,7 @@ class SurfaceTerms {
     return {input(i, detail), input(i, detail | 1), input(i, detail | 2)};
   }
   [[nodiscard]] bool has(Slot slot) { return b_.has_texture(slot); }
-  [[nodiscard]] Scalar texel(Slot slot, unsigned channel) { return {&b_, b_.channel(b_.texture(slot), channel)}; }
+  [[nodiscard]] Scalar texel(Slot slot, unsigned channel) { return {&b_, b_.texel(slot, channel)}; }
   [[nodiscard]] Triple texel3(Slot slot) { return {texel(slot, 0), texel(slot, 1), texel(slot, 2)}; }
   /// A factor times a channel of its texture, if it has one.
   [[nodiscard]] Scalar textured(Field f, Slot slot, unsigned channel);

@@ -134,16 +134,12 @@ void procedural_weights(const Procedural& texture, std::span<const float> x, std
     weight[i] = std::clamp(pattern(texture, p.x[i], p.z[i], noise_values[i]), 0.0F, 1.0F);
 }
 
-Rgba mixed(const Procedural& texture, float weight) {
-  const Color a = texture.color1, b = texture.color2;
-  const float rest = 1.0F - weight;
-  return Rgba(a.x * rest + b.x * weight, a.y * rest + b.y * weight, a.z * rest + b.z * weight, 1.0F);
-}
-
 Rgba evaluate(const Procedural& texture, Point position) {
   float weight = 0;
   procedural_weights(texture, {&position.x, 1}, {&position.y, 1}, {&position.z, 1}, {&weight, 1});
-  return mixed(texture, weight);
+  const Color a = texture.color1, b = texture.color2;
+  const float rest = 1.0F - weight;
+  return Rgba(a.x * rest + b.x * weight, a.y * rest + b.y * weight, a.z * rest + b.z * weight, 1.0F);
 }
 
 }  // namespace relook

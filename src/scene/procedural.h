@@ -11,10 +11,9 @@ namespace relook {
 /// The texture's value at `position`, in the units of its coordinates (object-space metres, or uv with z = 0); alpha 1.
 [[nodiscard]] Rgba evaluate(const Procedural& texture, Point position);
 
-/// The same for many positions at once: the mixing weight of color2, in [0, 1], lane by lane. Spans of equal length.
+/// The same for many positions at once: the weight w of color2, in [0, 1], lane by lane, where
+/// the value is color1 (1 - w) + color2 w. Spans of equal length.
 void procedural_weights(const Procedural& texture, std::span<const float> x, std::span<const float> y,
                         std::span<const float> z, std::span<float> weight);
-/// The colour for a weight; alpha 1.
-[[nodiscard]] Rgba mixed(const Procedural& texture, float weight);
 
 }  // namespace relook
