@@ -21,7 +21,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 RegionOptions region_options(const StructureOptions& structures) {
-  return {structures.groups, structures.tunnels, structures.atoms};
+  return {structures.groups, structures.tunnels, structures.color_trees_percent / 100, structures.atoms};
 }
 
 /// Replays one journal into one run folder.

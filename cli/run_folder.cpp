@@ -41,7 +41,7 @@ RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint3
   make_folders(path_ / "previews");
 }
 
-void RunFolder::write_step(StepReport& step, const Frame& frame, std::span<const std::uint32_t> changed_pixels,
+void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels,
                            FrameMeta meta) {
   const auto start = std::chrono::steady_clock::now();
   const bool is_first = preview_.empty();

@@ -23,7 +23,7 @@ class RunFolder {
 
   /// Writes the frame and preview of a step and sets step.frame, frame_hash, preview and seconds.write. Only tiles of
   /// changed pixels are compressed again. `meta.step` and `meta.change_class` are taken from `step`.
-  void write_step(StepReport& step, const Frame& frame, std::span<const std::uint32_t> changed_pixels, FrameMeta meta);
+  void write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels, FrameMeta meta);
   /// Writes overlays/<step>_<kind>.png: leaves that depend on the selection, leaves whose tunnels it may touch, groups.
   void write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result) const;
   void write_report(const RunReport& report) const;

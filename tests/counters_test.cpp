@@ -110,7 +110,7 @@ TEST(Counters, ColorStepsShootNothing) {
     std::size_t dependent = 0;
     for (const TreeNode& tree : trees) dependent += depends_on(tree, replayer.state().scene(), material) ? 1 : 0;
     EXPECT_EQ(step.counters.samples_affected, dependent) << material;
-    for (const std::uint32_t pixel : step.changed_pixels)
+    for (const std::uint32_t pixel : step.changed_pixels.indices(replayer.image().frame.width))
       EXPECT_TRUE(depends_on(trees[pixel], replayer.state().scene(), material)) << material << " at " << pixel;
   }
 }
@@ -174,7 +174,7 @@ TEST(Counters, OpticalStepsShootTheRaysBelowTheChangedNodes) {
       expected += below_material(before[pixel], after[pixel], scene, edit.material, edit.bends);
     EXPECT_EQ(step.counters.ray_updates, expected.rays);
     EXPECT_EQ(step.counters.shadow_updates, expected.shadows);
-    for (const std::uint32_t pixel : step.changed_pixels)
+    for (const std::uint32_t pixel : step.changed_pixels.indices(replayer.image().frame.width))
       EXPECT_TRUE(depends_on(before[pixel], scene, edit.material)) << "at " << pixel;
   }
 }
@@ -273,7 +273,7 @@ void expect_only_touched_segments_traced(const std::string& node, const char* ed
   EXPECT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments);
   EXPECT_LE(step.changed_pixels.size(), step.counters.samples_affected);
   EXPECT_LE(step.counters.samples_affected, step.counters.samples_total);
-  for (const std::uint32_t pixel : step.changed_pixels) EXPECT_TRUE(touched[pixel]) << "at " << pixel;
+  for (const std::uint32_t pixel : step.changed_pixels.indices(replayer.image().frame.width)) EXPECT_TRUE(touched[pixel]) << "at " << pixel;
 }
 
 TEST(Counters, MovedOpaqueObjectTracesOnlyTouchedSegments) {

@@ -72,7 +72,7 @@ TEST(FrameFile, updated_tiles_give_the_bytes_of_a_fresh_encoding) {
   encoder.update(frame);
   const std::vector<std::uint32_t> changed{5, 63, 64, kWidth * 69 + 149};
   for (const std::uint32_t pixel : changed) frame.pixels[pixel] = Rgba(9, 9, 9, 1);
-  encoder.update(frame, changed);
+  encoder.update(frame, ChangedPixels(changed, kWidth));
   EXPECT_EQ(encoder.exr(kMeta), encode_exr(frame, kMeta, PixelFormat::half));
 }
 
@@ -82,7 +82,7 @@ TEST(FrameFile, unchanged_tiles_are_not_encoded_again) {
   encoder.update(frame);
   const Bytes before = encoder.exr(kMeta);
   frame.pixels[149].r = 7;  // in the third tile, not announced
-  encoder.update(frame, std::vector<std::uint32_t>{0});
+  encoder.update(frame, ChangedPixels(std::vector<std::uint32_t>{0}, kWidth));
   EXPECT_EQ(encoder.exr(kMeta), before);
 }
 
@@ -147,7 +147,7 @@ TEST(Preview, updated_bands_give_the_bytes_of_a_fresh_encoding) {
   encoder.update(frame);
   EXPECT_EQ(encoder.png(), encode_png(frame));
   frame.pixels[kWidth * 69 + 3] = Rgba(0.2F, 0.9F, 0.4F, 1);
-  encoder.update(frame, std::vector<std::uint32_t>{kWidth * 69 + 3});
+  encoder.update(frame, ChangedPixels(std::vector<std::uint32_t>{kWidth * 69 + 3}, kWidth));
   EXPECT_EQ(encoder.png(), encode_png(frame));
   EXPECT_EQ(decode_pyramid(encoder.png(), true, "preview", "")->levels[0].height, kHeight);
 }

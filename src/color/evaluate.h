@@ -16,6 +16,19 @@ struct BlockColors {
   std::vector<Rgba> filters;  // [block.filters]
 };
 
+/// Working memory, reused between calls.
+struct ColorMemory {
+  BlockColors colors;
+  Scratch scratch;
+};
+
+/// The product of the filters between a node and a light.
+[[nodiscard]] inline float tint(const LightLink& link, int channel, const BlockColors& colors) {
+  float product = 1;
+  for (std::uint32_t f = 0; f < link.filters; ++f) product *= colors.filters[link.first + f][channel];
+  return product;
+}
+
 /// A program and the material whose parameters its leaves read.
 struct BoundProgram {
   const ColorProgram* program = nullptr;

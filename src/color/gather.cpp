@@ -22,14 +22,6 @@ void from_nodes(const Gathering& from, float* out, const Read& read) {
     out[lane] = read(from.block.nodes[from.indices[lane]]);
 }
 
-/// The product of the filters between a node and a light.
-float tint(const TreeBlock& block, const RayNode& node, std::uint32_t light, int channel, const BlockColors& colors) {
-  const LightLink& link = block.lights[node.first_light + light];
-  float product = 1;
-  for (std::uint32_t f = 0; f < link.filters; ++f) product *= colors.filters[link.first + f][channel];
-  return product;
-}
-
 }  // namespace
 
 void gather(std::uint32_t payload, const Gathering& from, const BlockColors& colors, float* out) {
@@ -59,7 +51,9 @@ void gather(std::uint32_t payload, const Gathering& from, const BlockColors& col
     case Input::child_length:
       return from_nodes(from, out, [&](const RayNode& node) { return from.block.nodes[node.child[static_cast<std::size_t>(axis)]].length; });
     case Input::tint:
-      return from_nodes(from, out, [&](const RayNode& node) { return tint(from.block, node, which, axis, colors); });
+      return from_nodes(from, out, [&](const RayNode& node) { 
+      return tint(from.block.lights[node.first_light + which], axis, colors);
+    });
   }
 }
 

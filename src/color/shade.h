@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "color/compressed_block.h"
 #include "color/evaluate.h"
 #include "color/illumination.h"
 #include "trace/path_cursor.h"
@@ -40,6 +41,10 @@ class Shader {
   ~Shader();
   /// Colours of the samples in `block`: out[k] is that of the tree rooted at node roots[k].
   void shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::span<Rgba> out);
+  /// Compresses those of the same samples that depend on `parameters`. What it returns holds pointers into `splits`.
+  /// Requires: where textures are looked up (kMappingMask) is no parameter.
+  [[nodiscard]] CompressedBlock compress(const TreeBlock& block, std::span<const std::uint32_t> roots,
+                                         const ParameterSet& parameters, SplitTable& splits);
 
  private:
   struct Impl;

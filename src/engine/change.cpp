@@ -104,7 +104,7 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
   for (const auto& light : delta.lights) {
     const Light& after = scene.light(light.id);
     if (!same_placement(light.before, after)) moved.push_back(light.id);
-    if (!same_color(light.before, after)) change.colors.lights.push_back(light.id);
+    if (!same_color(light.before, after)) change.colors.parameters.lights.push_back(light.id);
   }
   change.rays.old_lights = old_lights;
   change.rays.lights_changed = scene.light_order != old_lights || !moved.empty();
@@ -117,20 +117,6 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
 
 }  // namespace
 
-FieldMask ColorChange::fields_of(MaterialId material) const {
-  for (const auto& [changed, fields] : materials)
-    if (changed == material) return fields;
-  return 0;
-}
-
-bool ColorChange::reaches(const BoundProgram& bound) const {
-  const Dependencies& read_by = bound.program->dependencies;
-  if ((ambient && read_by.ambient) || (environment && read_by.environment)) return true;
-  if ((fields_of(bound.material) & read_by.material) != 0) return true;
-  const std::vector<LightId>& read = read_by.lights;
-  return std::ranges::any_of(lights, [&](LightId light) { return std::ranges::find(read, light) != read.end(); });
-}
-
 StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,
                        const std::vector<LightId>& old_lights) {
   StepChange change;
@@ -138,8 +124,10 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
   std::vector<bool> is_changed(scene.materials.size(), false);
   for (const auto& material : delta.materials) {
     is_changed[material.id.index()] = true;
-    const FieldMask fields = changed_fields(material.before, scene.material(material.id));
-    if (fields != 0) change.colors.materials.emplace_back(material.id, fields);
+    const Material& after = scene.material(material.id);
+    const FieldMask fields = changed_fields(material.before, after);
+    if (fields != 0) change.colors.parameters.materials.emplace_back(material.id, fields);
+    if (structure_of(material.before) != structure_of(after)) change.colors.restructured.push_back(material.id);
   }
   if (!delta.materials.empty())
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
@@ -152,8 +140,10 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
     change.colors.reassigned.push_back(object.id);
   }
   find_light_changes(scene, delta, old_lights, change);
-  change.colors.ambient = delta.ambient_before.has_value();
-  change.colors.environment = delta.environment_before.has_value();
+  change.colors.parameters.ambient = delta.ambient_before.has_value();
+  change.colors.parameters.environment = delta.environment_before.has_value();
+  change.colors.new_environment =
+      delta.environment_before && (delta.environment_before->image == nullptr) != (scene.environment.image == nullptr);
   return change;
 }
 

@@ -3,28 +3,22 @@
 #pragma once
 #include <vector>
 
-#include "color/evaluate.h"
+#include "color/parameter_set.h"
 #include "color/illumination.h"
 #include "region/tunnel.h"
 #include "trace/grow.h"
 
 namespace relook {
 
-/// Parameters of colour expressions whose values differ.
+/// What differs in colour expressions.
 struct ColorChange {
-  std::vector<std::pair<MaterialId, FieldMask>> materials;
-  std::vector<LightId> lights;
-  std::vector<ObjectId> reassigned;  // objects that have another material now
-  bool ambient = false, environment = false;
+  ParameterSet parameters;               // whose values differ
+  std::vector<MaterialId> restructured;  // of these materials: their expressions have another shape now
+  bool new_environment = false;          // the environment has an image now, or none any more: likewise
+  std::vector<ObjectId> reassigned;      // objects that have another material now
 
-  [[nodiscard]] bool empty() const {
-    return materials.empty() && lights.empty() && reassigned.empty() && !ambient && !environment;
-  }
+  [[nodiscard]] bool empty() const { return parameters.empty() && reassigned.empty(); }
   bool operator==(const ColorChange&) const = default;
-  /// The changed fields of a material.
-  [[nodiscard]] FieldMask fields_of(MaterialId material) const;
-  /// Can the change alter what a program yields?
-  [[nodiscard]] bool reaches(const BoundProgram& bound) const;
 };
 
 struct StepChange {

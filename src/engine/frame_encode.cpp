@@ -128,14 +128,9 @@ void FrameEncoder::update(const Frame& frame) {
   compress(frame, all);
 }
 
-void FrameEncoder::update(const Frame& frame, std::span<const std::uint32_t> changed_pixels) {
-  const std::uint32_t tiles_across = (width_ + kTileSize - 1) / kTileSize;
-  std::vector<bool> touched(chunks_.size());
-  for (const std::uint32_t pixel : changed_pixels)
-    touched[std::size_t{pixel / width_ / kTileSize} * tiles_across + pixel % width_ / kTileSize] = true;
+void FrameEncoder::update(const Frame& frame, const ChangedPixels& changed_pixels) {
   std::vector<std::uint32_t> tiles;
-  for (std::uint32_t tile = 0; tile < touched.size(); ++tile)
-    if (touched[tile]) tiles.push_back(tile);
+  for (const ChangedPixels::Tile& tile : changed_pixels.tiles()) tiles.push_back(tile.tile);
   compress(frame, tiles);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "engine/changed_pixels.h"
 #include "engine/image.h"
 
 namespace relook {
@@ -31,8 +32,8 @@ class FrameEncoder {
 
   /// Compresses all tiles.
   void update(const Frame& frame);
-  /// Compresses the tiles of the pixels that changed since the last update (indices into frame.pixels).
-  void update(const Frame& frame, std::span<const std::uint32_t> changed_pixels);
+  /// Compresses the tiles of the pixels that changed since the last update.
+  void update(const Frame& frame, const ChangedPixels& changed_pixels);
   /// The bytes of the file.
   [[nodiscard]] Bytes exr(const FrameMeta& meta) const;
 

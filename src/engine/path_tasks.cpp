@@ -36,45 +36,46 @@ class Finder {
   void find_colors(const ColorChange& colors) {
     if (colors.empty()) return;
     for (ObjectId object : colors.reassigned) flag(s_.index.paths_of(object), kShade);
-    if (!colors.lights.empty() || colors.ambient || colors.environment) {
-      check_all(colors);
+    const ParameterSet& parameters = colors.parameters;
+    if (!parameters.lights.empty() || parameters.ambient || parameters.environment) {
+      check_all(parameters);
       return;
     }
     const auto& objects = s_.rays.scene().objects;
     std::vector<PathId> candidates;
     for (std::uint32_t object = 0; object < objects.size(); ++object) {
-      if (colors.fields_of(objects[object].material) == 0) continue;
+      if (parameters.fields_of(objects[object].material) == 0) continue;
       const auto paths = s_.index.paths_of(ObjectId(object));
       candidates.insert(candidates.end(), paths.begin(), paths.end());
     }
     std::ranges::sort(candidates);
     const auto repeated = std::ranges::unique(candidates);
     candidates.erase(repeated.begin(), repeated.end());
-    check(candidates, colors);
+    check(candidates, parameters);
   }
 
-  void check_all(const ColorChange& colors) {
+  void check_all(const ParameterSet& parameters) {
     std::vector<PathId> all;
     for (std::uint32_t p = 0; p < s_.paths.size(); ++p) all.emplace_back(p);
-    check(all, colors);
+    check(all, parameters);
   }
 
   /// Flags those of the paths that have a node whose program the change reaches.
-  void check(const std::vector<PathId>& paths, const ColorChange& colors) {
+  void check(const std::vector<PathId>& paths, const ParameterSet& parameters) {
     constexpr std::size_t kGrain = 256;
     parallel_for(
         paths.size(),
         [&](std::size_t i) {
-          if (reaches(s_.paths.words(paths[i]), colors)) tasks_.of_path[paths[i].index()] |= kShade;
+          if (reaches(s_.paths.words(paths[i]), parameters)) tasks_.of_path[paths[i].index()] |= kShade;
         },
         kGrain);
     tasks_.any = tasks_.any || std::ranges::any_of(paths, [&](PathId p) { return tasks_.of_path[p.index()] != 0; });
   }
-  [[nodiscard]] bool reaches(std::span<const std::uint32_t> path, const ColorChange& colors) {
+  [[nodiscard]] bool reaches(std::span<const std::uint32_t> path, const ParameterSet& parameters) {
     std::vector<NodeKey> keys;
     append_keys(s_.rays, path, s_.lights, s_.shadow_bits, keys);
     return std::ranges::any_of(keys,
-                               [&](const NodeKey& key) { return colors.reaches(programs_.get(s_.rays.scene(), key)); });
+                               [&](const NodeKey& key) { return parameters.reaches(programs_.get(s_.rays.scene(), key)); });
   }
 
   const PathSearch& s_;

@@ -116,9 +116,12 @@ void PreviewEncoder::update(const Frame& frame) {
   compress(frame, all);
 }
 
-void PreviewEncoder::update(const Frame& frame, std::span<const std::uint32_t> changed_pixels) {
+void PreviewEncoder::update(const Frame& frame, const ChangedPixels& changed_pixels) {
+  const std::uint32_t tiles_across = (width_ + kTileSize - 1) / kTileSize;
   std::vector<bool> touched(bands_.size());
-  for (const std::uint32_t pixel : changed_pixels) touched[pixel / width_ / kBandRows] = true;
+  for (const ChangedPixels::Tile& tile : changed_pixels.tiles())
+    for (std::uint32_t y = 0; y < kTileSize; ++y)
+      if (tile.mask[y] != 0) touched[(tile.tile / tiles_across * kTileSize + y) / kBandRows] = true;
   std::vector<std::uint32_t> bands;
   for (std::uint32_t band = 0; band < touched.size(); ++band)
     if (touched[band]) bands.push_back(band);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/files.h"
+#include "engine/changed_pixels.h"
 #include "engine/image.h"
 
 namespace relook {
@@ -17,8 +18,8 @@ class PreviewEncoder {
 
   /// Deflates all bands.
   void update(const Frame& frame);
-  /// Deflates the bands of the pixels that changed since the last update (indices into frame.pixels).
-  void update(const Frame& frame, std::span<const std::uint32_t> changed_pixels);
+  /// Deflates the bands of the pixels that changed since the last update.
+  void update(const Frame& frame, const ChangedPixels& changed_pixels);
   /// The bytes of the file.
   [[nodiscard]] Bytes png() const;
 

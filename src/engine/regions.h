@@ -15,6 +15,7 @@ namespace relook {
 struct RegionOptions {
   std::size_t groups = 4;   // most paths of a group; 0: none
   std::size_t tunnels = 1;  // a region's; 0: none
+  double color_trees = 1;   // share of the samples whose colour trees are kept, over all sets of parameters
   std::uint32_t atoms = 0;  // depth of the node hierarchy from which nodes count as one object; 0: none
 };
 

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "engine/kept_selection.h"
+#include "engine/recolor.h"
 #include "engine/scene_level.h"
 #include "engine/stored_image.h"
 
@@ -51,6 +52,8 @@ struct Replayer::Impl {
   StoredImage stored;
   ProgramTable programs;
   KeptSelection selection;
+  CompressedEdits compressed;
+  Pool<ColorMemory> memory;
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
   std::vector<ShownSamples> on_top;   // by tile, while objects are lifted: where they are seen
@@ -58,7 +61,9 @@ struct Replayer::Impl {
   Impl(SceneState s, Image i, const RegionOptions& options)
       : state(std::move(s)),
         rays(state.scene()),
-        stored(std::move(i), state.scene().light_order, atoms(options.atoms), options) {}
+        stored(std::move(i), state.scene().light_order, atoms(options.atoms), options),
+        compressed(image().trees.size(),
+                   static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {}
 
   [[nodiscard]] const Image& image() const { return stored.image(); }
   [[nodiscard]] std::vector<ObjectId> atoms(std::uint32_t depth) const {
@@ -72,10 +77,12 @@ struct Replayer::Impl {
   void forget_programs(const StepChange& change) {
     if (change.rays.lights_changed) {
       programs.clear();
+      compressed.clear();
       return;
     }
-    for (const auto& [material, fields] : change.colors.materials) programs.forget(material);
-    if (change.colors.environment) programs.forget_environment();
+    compressed.note_colors(change.colors);
+    for (const MaterialId material : change.colors.restructured) programs.forget(material);
+    if (change.colors.new_environment) programs.forget_environment();
   }
 
   /// What one pass did, for the report.
@@ -88,11 +95,7 @@ struct Replayer::Impl {
   PassResult run(StepChange& change, std::span<const ObjectId> absent, bool keeps_trees, StepResult& result,
                  StopWatch& watch) {
     const std::vector<Leaves>* known_leaves = selection.leaves(change);
-    const PathTasks* known_tasks = selection.tasks(change);
-    PathTasks tasks = known_tasks != nullptr ? *known_tasks
-                                             : find_path_tasks({rays, image().paths, stored.index(), stored.lights(),
-                                                                image().view.shadow_bits, stored.classes()},
-                                                               change, programs);
+    PathTasks tasks = find_tasks(change);
     watch.lap(result.seconds.select);
     const Tracer::TopLevel* scene_level = nullptr;
     if (change.touches_rays()) {
@@ -196,28 +199,118 @@ struct Replayer::Impl {
   }
 
   void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
-    if (change.touches_rays()) stored.keep_trees(updates, grow(nullptr), change.rays.lights_changed);
+    if (!change.touches_rays()) return;
+    stored.keep_trees(updates, grow(nullptr), change.rays.lights_changed);
+    for (std::size_t tile = 0; tile < updates.size(); ++tile)
+      if (!updates[tile].packed.empty()) compressed.note_trees(tile);
   }
-  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, StepResult& result) {
-    stored.refresh_pixels(tile, samples, on_top.empty() ? nullptr : &on_top[tile], result.changed_pixels);
+  void keep_colors(const std::vector<TileUpdate>& updates) {
+    parallel_for(updates.size(),
+                 [&](std::size_t tile) { stored.keep_colors(tile, updates[tile].shaded, updates[tile].colors); });
   }
 
-  /// Brings trees, colours and frame up to date with the scene; finish() follows.
-  void update(StepChange& change, StepResult& result, StopWatch& watch) {
-    if (change.touches_rays() || !change.colors.empty()) {
-      const PassResult done = run(change, {}, true, result, watch);
-      keep_trees(done.updates, change);
-      watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-      stored.keep_colors(done.updates);
-      for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
-        refresh_pixels(tile, done.updates[tile].shaded, result);
-      watch.lap(result.seconds.evaluate);
+  /// Works pixels out again: `refresh(tile, refresh_samples)` calls refresh_samples(samples) for those of a tile.
+  template <class Refresh>
+  void refresh_pixels(const Refresh& refresh, StepResult& result) {
+    std::vector<TileMask> changed(image().trees.size());
+    parallel_for(changed.size(), [&](std::size_t tile) {
+      refresh(tile, [&](std::span<const std::uint32_t> samples) {
+        stored.refresh_pixels(tile, samples, on_top.empty() ? nullptr : &on_top[tile], changed[tile]);
+      });
+    });
+    for (std::size_t tile = 0; tile < changed.size(); ++tile) result.changed_pixels.add(tile, changed[tile]);
+  }
+
+  /// Brings trees, colours and frame up to date with the scene, where `also_shown` was seen on top so far; finish()
+  /// follows.
+  void update(StepChange& change, StepResult& result, StopWatch& watch,
+              const std::vector<ShownSamples>& also_shown = {}) {
+    std::vector<TileUpdate> updates;
+    if (!change.touches_rays() && is_compressible(change.colors) && also_shown.empty()) {
+      if (!change.colors.empty()) recolor(change, result, watch);
+      return;
     }
+    updates = run(change, {}, true, result, watch).updates;
+    keep_trees(updates, change);
+    watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
+    keep_colors(updates);
+    refresh_pixels(
+        [&](std::size_t tile, const auto& refresh_samples) {
+          refresh_samples(updates[tile].shaded);
+          if (!also_shown.empty()) refresh_samples(also_shown[tile].samples);
+        },
+        result);
+    watch.lap(result.seconds.evaluate);
+  }
+
+  /// Colour parameters alone have changed: what depends on them is compressed, unless it is already, and evaluated.
+  void recolor(const StepChange& change, StepResult& result, StopWatch& watch) {
+    CompressedImage& kept = compressed.of(change.colors.parameters);
+    std::vector<TileWork> works;
+    PathTasks tasks;
+    const std::vector<Leaves>* known_leaves = selection.leaves(change);
+    if (!kept.is_valid()) {
+      tasks = find_tasks(change);
+      works.resize(kept.tiles.size());
+    }
+    watch.lap(result.seconds.select);
+    const GrowScene scene = grow(nullptr);
+    const std::vector<bool> near_tiles;
+    const UpdatePass pass{image(),          stored.lights(), scene,   change,     tasks,        stored.classes(),
+                          stored.regions(), nullptr,         near_tiles, known_leaves, programs};
+    parallel_for(works.size(), [&](std::size_t tile) {
+      if (!kept.tiles[tile].is_valid) works[tile] = find_tile_work(pass, tile);
+    });
+    std::vector<std::size_t> tiles;
+    for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) {
+      if (!kept.tiles[tile].samples.empty() || (!works.empty() && works[tile].leaves.any())) tiles.push_back(tile);
+      if (!works.empty()) result.counters.by_groups += works[tile].by_groups;
+    }
+    watch.lap(result.seconds.test);
+    std::vector<TileMask> changed(tiles.size());
+    Pool<Shader> shaders;
+    parallel_for(tiles.size(), [&](std::size_t i) {
+      CompressedTile& tile = kept.tiles[tiles[i]];
+      if (!tile.is_valid) {
+        const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays, programs); });
+        tile = compress_tile(pass, tiles[i], works[tiles[i]], kept, *shader);
+      }
+      const auto room = memory.take([] { return std::make_unique<ColorMemory>(); });
+      changed[i] = recolor_tile(tile, tiles[i], state.scene(), stored, *room);
+    });
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      result.changed_pixels.add(tiles[i], changed[i]);
+      result.counters.samples_affected += kept.tiles[tiles[i]].samples.size();
+    }
+    result.counters.color_trees_evaluated = result.counters.samples_affected;
+    finish_recolor(change, kept, std::move(works), std::move(tasks), result);
+    watch.lap(result.seconds.evaluate);
+  }
+
+  /// Keeps what a recolouring has found for the next ones.
+  void finish_recolor(const StepChange& change, CompressedImage& kept, const std::vector<TileWork>& works,
+                      PathTasks tasks, StepResult& result) {
+    result.dependent.resize(kept.tiles.size());
+    result.touched.resize(kept.tiles.size());
+    for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) result.dependent[tile] = kept.tiles[tile].leaves;
+    if (!works.empty()) {
+      for (CompressedTile& tile : kept.tiles) tile.is_valid = true;  // those without work have no samples
+      kept.invalid = 0;
+      selection.keep(change, std::move(tasks), result.dependent);
+    }
+    compressed.trim();
+  }
+
+  [[nodiscard]] PathTasks find_tasks(const StepChange& change) {
+    const PathTasks* known = selection.tasks(change);
+    if (known != nullptr) return *known;
+    return find_path_tasks(
+        {rays, image().paths, stored.index(), stored.lights(), image().view.shadow_bits, stored.classes()}, change,
+        programs);
   }
 
   void finish(StepResult& result) {
     if (has_atoms()) stored.set_atoms(atoms(stored.regions().options().atoms), grow(nullptr));
-    std::ranges::sort(result.changed_pixels);
     Counters& counters = result.counters;
     counters.pixels_changed = result.changed_pixels.size();
     if (counters.ray_tests + counters.ray_tests_culled == 0) counters.ray_tests_culled = stored.segments();  // no pass
@@ -254,8 +347,7 @@ struct Replayer::Impl {
       put_back_with(change);  // lights move with the selection, say: not the paper's kind of drag
       const std::vector<ShownSamples> shown = std::exchange(on_top, {});
       lifted.clear();
-      update(change, result, watch);
-      for (std::size_t tile = 0; tile < shown.size(); ++tile) refresh_pixels(tile, shown[tile].samples, result);
+      update(change, result, watch, shown);
       finish(result);
       return result;
     }
@@ -284,7 +376,7 @@ struct Replayer::Impl {
     lifted = std::move(all);
     PassResult done = run(change, lifted, true, result, watch);
     keep_trees(done.updates, change);
-    stored.keep_colors(done.updates);
+    keep_colors(done.updates);
     watch.lap(result.seconds.update);
     return std::move(done.updates);
   }
@@ -295,17 +387,19 @@ struct Replayer::Impl {
     if (lifted.empty()) return;  // nothing has moved yet
     StepChange change = put_back();
     const PassResult done = run(change, {}, false, result, watch);
-    for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
-      const TileUpdate& update = done.updates[tile];
-      const std::vector<std::uint32_t> shown = std::exchange(on_top[tile].samples, update.shaded);
-      on_top[tile].colors = update.colors;
-      if (!removed.empty()) {
-        result.counters.samples_affected -= common(removed[tile].shaded, update.shaded);
-        refresh_pixels(tile, removed[tile].shaded, result);
-      }
-      refresh_pixels(tile, shown, result);
-      refresh_pixels(tile, update.shaded, result);
-    }
+    if (!removed.empty())
+      for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
+        result.counters.samples_affected -= common(removed[tile].shaded, done.updates[tile].shaded);
+    refresh_pixels(
+        [&](std::size_t tile, const auto& refresh_samples) {
+          const TileUpdate& update = done.updates[tile];
+          const std::vector<std::uint32_t> shown = std::exchange(on_top[tile].samples, update.shaded);
+          on_top[tile].colors = update.colors;
+          if (!removed.empty()) refresh_samples(removed[tile].shaded);
+          refresh_samples(shown);
+          refresh_samples(update.shaded);
+        },
+        result);
     watch.lap(result.seconds.evaluate);
   }
 
@@ -341,7 +435,7 @@ Resident Replayer::resident() const {
     resident.ray_trees += tile.first_hit.size() * sizeof(std::uint32_t) + tile.hits.size() * sizeof(Hit);
   }
   resident.tunnels = impl_->stored.regions().group_bytes() + impl_->stored.regions().tunnel_bytes();
-  // Until colour trees are kept, what is kept of them is their result: a colour a sample.
+  resident.color_trees = impl_->compressed.bytes();
   for (const std::vector<Rgba>& colors : impl_->image().sample_colors)
     resident.color_trees += colors.size() * sizeof(Rgba);
   const std::uint64_t frame = impl_->image().frame.pixels.size() * sizeof(Rgba);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "edit/apply.h"
+#include "engine/changed_pixels.h"
 #include "engine/counters.h"
 #include "engine/image.h"
 #include "engine/regions.h"
@@ -18,7 +19,7 @@ struct StepResult {
   Classification classification;
   Counters counters;
   Seconds seconds;                            // classify .. evaluate; write and total are the caller's
-  std::vector<std::uint32_t> changed_pixels;  // indices into frame.pixels, increasing
+  ChangedPixels changed_pixels;
   std::vector<Leaves> dependent, touched;  // by tile: leaves whose paths the change reaches, whose tunnels it may touch
 };
 

@@ -1,8 +1,10 @@
 // Samples of a tile: which pixel, where in it, and the primary ray. Fixed positions, no randomness.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "engine/image.h"
+#include "region/quadtree.h"
 #include "scene/camera.h"
 #include "trace/tree_block.h"
 
@@ -12,10 +14,18 @@ namespace relook {
 [[nodiscard]] inline std::uint32_t sample_count(const TileRect& rect, const ViewOptions& view) {
   return rect.pixels() * view.samples;
 }
-/// Index of a tile-local pixel in the frame.
-[[nodiscard]] inline std::size_t frame_index(const TileRect& rect, std::uint32_t pixel, std::uint32_t frame_width) {
-  const std::uint32_t width = rect.x1 - rect.x0;
-  return std::size_t{rect.y0 + pixel / width} * frame_width + rect.x0 + pixel % width;
+/// Calls visit(sample, leaf) for the samples of some leaves of a tile, in increasing order.
+template <class Visit>
+void for_each_sample(const TileRect& rect, const ViewOptions& view, const Leaves& leaves, const Visit& visit) {
+  const std::uint32_t width = rect.x1 - rect.x0, height = rect.y1 - rect.y0;
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t column = 0; column * kLeafSize < width; ++column) {
+      const std::uint32_t leaf = y / kLeafSize * kLeafSide + column;
+      if (!leaves.test(leaf)) continue;
+      const std::uint32_t x0 = column * kLeafSize, x1 = std::min(x0 + kLeafSize, width);
+      const std::uint32_t first = (y * width + x0) * view.samples, last = (y * width + x1) * view.samples;
+      for (std::uint32_t sample = first; sample < last; ++sample) visit(sample, leaf);
+    }
 }
 /// The primary rays of an image's samples.
 class PrimaryRays {

@@ -133,30 +133,35 @@ void StoredImage::drop_unused_paths(const GrowScene& scene) {
   classify_paths(scene);
 }
 
-void StoredImage::keep_colors(const std::vector<TileUpdate>& updates) {
-  for (std::size_t tile = 0; tile < updates.size(); ++tile)
-    for (std::size_t k = 0; k < updates[tile].shaded.size(); ++k)
-      image_.sample_colors[tile][updates[tile].shaded[k]] = updates[tile].colors[k];
+void StoredImage::keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors) {
+  std::vector<Rgba>& stored = image_.sample_colors[tile];
+  for (std::size_t k = 0; k < samples.size(); ++k) stored[samples[k]] = colors[k];
 }
 
-void StoredImage::refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const ShownSamples* shown,
-                                 std::vector<std::uint32_t>& changed_pixels) {
+void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,
+                                 TileMask& changed) {
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
-  const std::vector<Rgba>& stored = image_.sample_colors[tile];
-  std::vector<Rgba> colors(image_.view.samples);
-  std::uint32_t last_pixel = kNoNode;
-  for (std::uint32_t sample : samples) {
-    const std::uint32_t pixel = sample / image_.view.samples;
+  const std::uint32_t width = rect.x1 - rect.x0, count = image_.view.samples;
+  const Rgba* stored = image_.sample_colors[tile].data();
+  std::vector<Rgba> on_top(shown != nullptr ? count : 0);
+  std::uint32_t last_pixel = kNoNode, y = 0;
+  for (const std::uint32_t sample : samples) {
+    const std::uint32_t pixel = count == 1 ? sample : sample / count;
     if (pixel == last_pixel) continue;
     last_pixel = pixel;
-    const std::uint32_t first = pixel * image_.view.samples;
-    std::copy_n(stored.begin() + first, image_.view.samples, colors.begin());
-    if (shown != nullptr) put_on_top(*shown, first, colors);
-    const std::size_t place = frame_index(rect, pixel, image_.frame.width);
-    const Rgba color = pixel_color(colors.data(), image_.view.samples);
-    if (same_bits(color, image_.frame.pixels[place])) continue;
-    image_.frame.pixels[place] = color;
-    changed_pixels.push_back(static_cast<std::uint32_t>(place));
+    while (pixel >= (y + 1) * width) ++y;
+    const std::uint32_t x = pixel - y * width;
+    const Rgba* colors = stored + std::size_t{pixel} * count;
+    if (shown != nullptr) {
+      std::copy_n(colors, count, on_top.begin());
+      put_on_top(*shown, pixel * count, on_top);
+      colors = on_top.data();
+    }
+    const Rgba color = pixel_color(colors, count);
+    Rgba& place = image_.frame.pixels[std::size_t{rect.y0 + y} * image_.frame.width + rect.x0 + x];
+    if (same_bits(color, place)) continue;
+    place = color;
+    changed[y] |= std::uint64_t{1} << x;
   }
 }
 

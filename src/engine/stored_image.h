@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/changed_pixels.h"
 #include "engine/image.h"
 #include "engine/path_classes.h"
 #include "engine/path_index.h"
@@ -43,11 +44,11 @@ class StoredImage {
   /// Takes over new trees, by tile, and keeps the regions equal to what would be built from them. `scene`: in which
   /// they hold. `lights_changed`: all samples have been packed anew, since the form of paths follows the light order.
   void keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
-  void keep_colors(const std::vector<TileUpdate>& updates);
-  /// Works the pixels of some samples of a tile out again, appends those that differ to `changed_pixels`. `shown`:
-  /// may be null.
-  void refresh_pixels(std::size_t tile, const std::vector<std::uint32_t>& samples, const ShownSamples* shown,
-                      std::vector<std::uint32_t>& changed_pixels);
+  /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
+  void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
+  /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
+  void refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,
+                      TileMask& changed);
 
  private:
   [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }

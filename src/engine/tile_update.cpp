@@ -19,19 +19,10 @@ class TileUpdater {
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
         shader_(shader) {}
 
-  /// Leaves in rows, so that samples come in increasing order.
   TileUpdate update(const TileWork& work) {
-    const std::uint32_t width = rect_.x1 - rect_.x0, height = rect_.y1 - rect_.y0;
-    const std::uint32_t samples = p_.image.view.samples;
     for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
-    for (std::uint32_t y = 0; y < height; ++y)
-      for (std::uint32_t column = 0; column * kLeafSize < width; ++column) {
-        const std::uint32_t leaf = y / kLeafSize * kLeafSide + column;
-        if (!work.leaves.test(leaf)) continue;
-        const std::uint32_t x0 = column * kLeafSize, x1 = std::min(x0 + kLeafSize, width);
-        for (std::uint32_t sample = (y * width + x0) * samples; sample < (y * width + x1) * samples; ++sample)
-          update_sample(sample, leaf);
-      }
+    for_each_sample(rect_, p_.image.view, work.leaves,
+                    [&](std::uint32_t sample, std::uint32_t leaf) { update_sample(sample, leaf); });
     flush();
     return std::move(result_);
   }

@@ -83,7 +83,8 @@ LookPair time_look(Replayer& without, Replayer& with, const JournalStep& step, c
     static_cast<void>(timed(with, StepKind::step, inverse, journal));
   }
   if (times.with.step.result.classification.change == ChangeClass::optical)
-    times.work = time_pixel_work(with.state().scene(), with.image().view, times.with.step.result.changed_pixels);
+    times.work = time_pixel_work(with.state().scene(), with.image().view,
+                                 times.with.step.result.changed_pixels.indices(with.image().frame.width));
   return times;
 }
 

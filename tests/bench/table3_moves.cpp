@@ -37,7 +37,8 @@ void time_drag(Replayer& replayer, const std::vector<Edit>& entries, const Edit&
   const ViewOptions& view = replayer.image().view;
   const bool is_first_round = times.later_work.empty();
   const auto work = [&](const TimedStep& step) {
-    return time_pixel_work(replayer.state().scene(), view, step.result.changed_pixels);
+    return time_pixel_work(replayer.state().scene(), view,
+                           step.result.changed_pixels.indices(replayer.image().frame.width));
   };
   TimedStep first = timed(replayer, StepKind::drag, entries[0], journal);
   if (is_first_round) times.first_work = work(first);
@@ -64,7 +65,8 @@ MoveTimes time_move(Replayer& replayer, const JournalStep& step, const Edit& inv
     keep_faster(times.merged, timed(replayer, StepKind::step, edit, journal));
   }
   times.merged_work =
-      time_pixel_work(replayer.state().scene(), replayer.image().view, times.merged.result.changed_pixels);
+      time_pixel_work(replayer.state().scene(), replayer.image().view,
+                      times.merged.result.changed_pixels.indices(replayer.image().frame.width));
   return times;
 }
 

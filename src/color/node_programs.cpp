@@ -1,0 +1,92 @@
+#include "color/node_programs.h"
+
+#include <mutex>
+
+namespace relook {
+
+NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside) {
+  const RayObject& object = scene.object(id);
+  NodeKey key;
+  key.kind = NodeKind::surface;
+  key.material = scene.scene().object(id).material;
+  key.inside = inside;
+  key.vertex_colors = !object.mesh->colors.empty();
+  key.interface_only = object.optics.volume && inside;
+  return key;
+}
+
+NodeKey filter_key(const RayScene& scene, ObjectId id) {
+  NodeKey key = surface_key(scene, id, false);
+  key.kind = NodeKind::filter;
+  return key;
+}
+
+void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state) {
+  if (state == ShadowState::open || state == ShadowState::filtered)
+    key.lights.push_back({light, order, state == ShadowState::filtered});
+}
+
+NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node) {
+  if (node.object.is_none()) return {};
+  NodeKey key = surface_key(scene, node.object, node.point.inside);
+  for (std::size_t b = 0; b < kBranches; ++b)
+    if (node.child[b] != kNoNode) key.children = static_cast<std::uint8_t>(key.children | 1U << b);
+  const auto& order = scene.scene().light_order;
+  for (std::uint32_t light = 0; light < order.size(); ++light)
+    note_light(key, order[light], light, block.lights[node.first_light + light].state);
+  return key;
+}
+
+BoundProgram ProgramTable::get(const Scene& scene, const NodeKey& key) {
+  {
+    const std::shared_lock lock(mutex_);
+    const auto it = bound_.find(key);
+    if (it != bound_.end()) return it->second;
+  }
+  Shape shape{key.material.is_none() ? MaterialStructure{} : structure_of(scene.material(key.material)), key};
+  shape.second.material = MaterialId::none();
+  const std::unique_lock lock(mutex_);
+  auto& program = programs_[shape];
+  if (!program) program = std::make_unique<const ColorProgram>(build_program(scene, shape.first, shape.second));
+  return bound_.try_emplace(key, BoundProgram{program.get(), key.material}).first->second;
+}
+
+void ProgramTable::forget(MaterialId material) {
+  std::erase_if(bound_, [&](const auto& entry) { return entry.first.material == material; });
+}
+void ProgramTable::forget_environment() {
+  std::erase_if(bound_, [](const auto& entry) { return entry.first.kind == NodeKind::environment; });
+  std::erase_if(programs_, [](const auto& entry) { return entry.first.second.kind == NodeKind::environment; });
+}
+void ProgramTable::clear() {
+  bound_.clear();
+  programs_.clear();
+}
+
+void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
+                 std::uint32_t shadow_bits, std::vector<NodeKey>& keys) {
+  for (PathCursor cursor(path, {lights.size(), shadow_bits}); !cursor.at_end();) {
+    const PathNode node = cursor.next();
+    if (node.is_miss()) {
+      keys.emplace_back();
+      continue;
+    }
+    NodeKey key = surface_key(scene, node.object(), node.inside());
+    key.children = static_cast<std::uint8_t>(node.flags & 0xFU);
+    EntryReader entries(node.entries, shadow_bits);
+    for (std::uint32_t light = 0; light < lights.size(); ++light) {
+      const ShadowState state = shadow_state(node.lights, light);
+      note_light(key, lights[light], light, state);
+      const LightEntry entry = entries.next(state);
+      if (state != ShadowState::filtered) continue;
+      for (const std::uint32_t object : entry.objects) {
+        keys.push_back(filter_key(scene, ObjectId(object)));
+        keys.push_back(keys.back());
+        keys.back().inside = true;
+      }
+    }
+    keys.push_back(std::move(key));
+  }
+}
+
+}  // namespace relook

@@ -1,0 +1,25 @@
+// A set of parameters of colour expressions: those whose values an edit changes, or may change again.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "color/evaluate.h"
+
+namespace relook {
+
+struct ParameterSet {
+  std::vector<std::pair<MaterialId, FieldMask>> materials;  // each once
+  std::vector<LightId> lights;                              // their colour parameters
+  bool ambient = false, environment = false;
+
+  [[nodiscard]] bool empty() const { return materials.empty() && lights.empty() && !ambient && !environment; }
+  bool operator==(const ParameterSet&) const = default;
+  /// The fields of a material that are in the set.
+  [[nodiscard]] FieldMask fields_of(MaterialId material) const;
+  [[nodiscard]] bool has(LightId light) const;
+  /// Does a program read any of them?
+  [[nodiscard]] bool reaches(const BoundProgram& bound) const { return reaches(bound.material, bound.program->dependencies); }
+  [[nodiscard]] bool reaches(MaterialId material, const Dependencies& read) const;
+};
+
+}  // namespace relook

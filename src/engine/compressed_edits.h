@@ -1,0 +1,64 @@
+// Colour trees that are kept (paper 3.3, 4.1.1): for sets of parameters that steps have changed, the compressed trees of
+// the samples that depend on them. What else an edit changes makes them invalid tile by tile.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "color/compressed_block.h"
+#include "engine/change.h"
+#include "region/quadtree.h"
+
+namespace relook {
+
+/// Those of one tile.
+struct CompressedTile {
+  std::vector<CompressedBlock> blocks;
+  std::vector<std::uint32_t> samples;  // of the tile, increasing: the roots of all blocks, one after the other
+  Leaves leaves;                       // with any of the samples
+  bool is_valid = false;               // false: to be built
+  double build_seconds = 0;
+  std::size_t bytes = 0;
+};
+
+/// Those of one set of parameters.
+struct CompressedImage {
+  CompressedImage(ParameterSet of, std::size_t tile_count) : parameters(std::move(of)), tiles(tile_count) {}
+  [[nodiscard]] bool is_valid() const { return invalid == 0; }
+  void drop(CompressedTile& tile);
+
+  ParameterSet parameters;
+  SplitTable splits;
+  std::vector<CompressedTile> tiles;
+  std::size_t invalid = tiles.size();  // tiles that are to be built
+  std::uint64_t last_step = 0;
+};
+
+class CompressedEdits {
+ public:
+  /// `most_samples`: whose trees may be kept over all sets of parameters, m_c in the paper (4.1).
+  CompressedEdits(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
+
+  /// What is kept for the parameters, perhaps nothing yet. Valid until the next call.
+  [[nodiscard]] CompressedImage& of(const ParameterSet& parameters);
+
+  /// To be called with every change before its step's own trees are used.
+  void note_colors(const ColorChange& change);
+  /// The trees of a tile have changed.
+  void note_trees(std::size_t tile);
+  void clear() { images_.clear(); }
+
+  /// After a step: drops what has the least information weight (paper 4.3: time to rebuild over size and over the number
+  /// of changes since it was used) until no more samples than allowed are left.
+  void trim();
+
+  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] std::uint64_t samples() const;
+
+ private:
+  std::size_t tile_count_;
+  std::uint64_t most_samples_, step_ = 0;
+  std::vector<std::unique_ptr<CompressedImage>> images_;
+};
+
+}  // namespace relook
