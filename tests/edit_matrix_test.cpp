@@ -261,7 +261,7 @@ std::vector<StructureCase> every_combination() {
     for (const std::size_t tunnels : {0U, 1U, 2U})
       for (const std::uint32_t atoms : {0U, 1U})
         for (const std::uint32_t shadow_bits : {0U, 1U, 2U, 3U, 4U})
-          cases.push_back({{groups, tunnels, atoms}, shadow_bits});
+          cases.push_back({{.groups = groups, .tunnels = tunnels, .atoms = atoms}, shadow_bits});
   return cases;
 }
 

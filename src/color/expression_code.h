@@ -29,6 +29,7 @@ enum class Op : std::uint8_t {
   min,
   max,
   if_positive,        // a > 0 ? b : c
+  multiply_add,       // a b + c, each operation rounded: in kernels only
   sheen_albedo,       // (cosine, roughness)
   procedural_weight,  // payload: slot; (x, y, z, area ratio) to the share of color2
   // lookups: several results in consecutive registers (see `channel`)
@@ -75,7 +76,7 @@ using Code = std::vector<Instruction>;
 /// Leaves with one value for a whole batch.
 [[nodiscard]] inline bool is_parameter(Op op) { return op <= Op::environment; }
 /// Plain arithmetic on lanes.
-[[nodiscard]] inline bool is_arithmetic(Op op) { return op >= Op::sqrt && op <= Op::if_positive; }
+[[nodiscard]] inline bool is_arithmetic(Op op) { return op >= Op::sqrt && op <= Op::multiply_add; }
 /// Does the value differ from sample to sample, given that of its operands?
 [[nodiscard]] std::vector<bool> find_uniform(const Code& code);
 

@@ -99,6 +99,9 @@ const Kernel::Step* run_steps(const Kernel::Step* step, const Kernel::Step* end,
       case Op::if_positive:
         for (std::size_t i = 0; i < n; ++i) out[i] = a[i] > 0 ? b[i] : c[i];
         break;
+      case Op::multiply_add:
+        for (std::size_t i = 0; i < n; ++i) out[i] = a[i] * b[i] + c[i];
+        break;
       default:
         break;
     }

@@ -39,14 +39,13 @@ bool same_directions(const Material& a, const Material& b, const SurfaceOptics& 
   return (same_normal || !optics.spawns()) && (same_coat || !optics.coat_reflects);
 }
 
-std::uint8_t material_flags(const RayObject& before, const RayObject& after) {
+/// `optics`: of the object's mesh with `after`.
+std::uint8_t material_flags(const RayObject& before, const Material& after, const SurfaceOptics& optics) {
   unsigned flags = 0;
-  if (before.optics.cut_out != after.optics.cut_out ||
-      (after.optics.cut_out && !same_holes(*before.material, *after.material)))
+  if (before.optics.cut_out != optics.cut_out || (optics.cut_out && !same_holes(*before.material, after)))
     flags |= RayChange::moved | RayChange::shadows;
-  if (before.optics.passes_light != after.optics.passes_light) flags |= RayChange::shadows;
-  if (before.optics != after.optics || !same_directions(*before.material, *after.material, after.optics))
-    flags |= RayChange::respawns;
+  if (before.optics.passes_light != optics.passes_light) flags |= RayChange::shadows;
+  if (before.optics != optics || !same_directions(*before.material, after, optics)) flags |= RayChange::respawns;
   return static_cast<std::uint8_t>(flags);
 }
 
@@ -62,10 +61,7 @@ bool same_color(const Light& a, const Light& b) {
 class ObjectChanges {
  public:
   ObjectChanges(const RayScene& ray_scene, const Scene& scene, StepChange& change)
-      : ray_scene_(ray_scene), scene_(scene), change_(change) {
-    change_.rays.objects.assign(scene.objects.size(), 0);
-    change_.rays.before_index.assign(scene.objects.size(), kNoNode);
-  }
+      : ray_scene_(ray_scene), scene_(scene), change_(change) {}
 
   void move(const SceneDelta::ObjectChange& object) {
     Object placement = object.before;
@@ -76,12 +72,13 @@ class ObjectChanges {
   void compare_material(ObjectId id, const Material& after) {
     if (id.index() >= ray_scene_.size() || !scene_.object(id).alive) return;
     const RayObject& before = ray_scene_.object(id);
-    if (before.alive) flag(id, material_flags(before, ray_scene_.make_object(scene_, scene_.object(id), after)));
+    if (before.alive) flag(id, material_flags(before, after, surface_optics(after, *before.mesh)));
   }
 
  private:
   void flag(ObjectId id, unsigned flags) {
     if (flags == 0) return;
+    change_.rays.reserve(scene_.objects.size());
     std::uint8_t& known = change_.rays.objects[id.index()];
     if (known == 0 && id.index() < ray_scene_.size()) {
       change_.rays.before_index[id.index()] = static_cast<std::uint32_t>(change_.rays.before.size());
@@ -121,18 +118,17 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
                        const std::vector<LightId>& old_lights) {
   StepChange change;
   ObjectChanges objects(ray_scene, scene, change);
-  std::vector<bool> is_changed(scene.materials.size(), false);
   for (const auto& material : delta.materials) {
-    is_changed[material.id.index()] = true;
     const Material& after = scene.material(material.id);
     const FieldMask fields = changed_fields(material.before, after);
     if (fields != 0) change.colors.parameters.materials.emplace_back(material.id, fields);
     if (structure_of(material.before) != structure_of(after)) change.colors.restructured.push_back(material.id);
   }
-  if (!delta.materials.empty())
-    for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
-      if (is_changed[scene.objects[i].material.index()])
-        objects.compare_material(ObjectId(i), scene.material(scene.objects[i].material));
+  // Objects that have another material now follow below.
+  for (const auto& material : delta.materials)
+    if (material.id.index() < ray_scene.material_count())
+      for (const ObjectId user : ray_scene.users_of(material.id))
+        if (scene.object(user).material == material.id) objects.compare_material(user, scene.material(material.id));
   for (const auto& object : delta.objects) {
     objects.move(object);
     if (object.before.material == scene.object(object.id).material) continue;

@@ -318,6 +318,7 @@ struct Replayer::Impl {
 
   /// Makes a change also put the lifted objects, where they are now, back into the ray trees.
   void put_back_with(StepChange& change) const {
+    if (!lifted.empty()) change.rays.reserve(state.scene().objects.size());
     for (ObjectId id : lifted) {
       change.rays.objects[id.index()] |= RayChange::moved | RayChange::shadows;
       change.rays.before_index[id.index()] = kNoNode;  // in no tree
@@ -330,8 +331,6 @@ struct Replayer::Impl {
   [[nodiscard]] StepChange put_back() const {
     StepChange change;
     RayChange& r = change.rays;
-    r.objects.assign(state.scene().objects.size(), 0);
-    r.before_index.assign(state.scene().objects.size(), kNoNode);
     r.old_lights = stored.lights();
     for (std::uint32_t i = 0; i < stored.lights().size(); ++i) r.old_light_index.push_back(i);
     put_back_with(change);

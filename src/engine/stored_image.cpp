@@ -143,6 +143,17 @@ void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
   const std::uint32_t width = rect.x1 - rect.x0, count = image_.view.samples;
   const Rgba* stored = image_.sample_colors[tile].data();
+  if (count == 1 && shown == nullptr) {
+    std::uint32_t y = 0;
+    for (const std::uint32_t pixel : samples) {
+      while (pixel >= (y + 1) * width) ++y;
+      const std::uint32_t x = pixel - y * width;
+      Rgba& place = image_.frame.pixels[std::size_t{rect.y0 + y} * image_.frame.width + rect.x0 + x];
+      changed[y] |= std::uint64_t{same_bits(stored[pixel], place) ? 0U : 1U} << x;
+      place = stored[pixel];
+    }
+    return;
+  }
   std::vector<Rgba> on_top(shown != nullptr ? count : 0);
   std::uint32_t last_pixel = kNoNode, y = 0;
   for (const std::uint32_t sample : samples) {

@@ -49,7 +49,7 @@ struct RayChange {
     shadows = 2,   // it blocks or filters light differently (moved objects too)
     respawns = 4,  // its hits stay, but other rays may leave from them
   };
-  std::vector<std::uint8_t> objects;               // flags by ObjectId
+  std::vector<std::uint8_t> objects;               // flags by ObjectId; empty: none has any
   std::vector<RayObject> before;                   // values before the change of flagged objects
   std::vector<std::uint32_t> before_index;         // by ObjectId, into `before`
   Tracer::TopLevel moved_after;                    // moved objects where they are now
@@ -59,7 +59,12 @@ struct RayChange {
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
   bool lights_changed = false;                     // any light added, deleted, moved or reordered
 
-  [[nodiscard]] std::uint8_t flags(ObjectId id) const { return objects[id.index()]; }
+  [[nodiscard]] std::uint8_t flags(ObjectId id) const { return objects.empty() ? std::uint8_t{0} : objects[id.index()]; }
+  /// Makes room for the flags of that many objects.
+  void reserve(std::size_t count) {
+    objects.resize(count, 0);
+    before_index.resize(count, kNoNode);
+  }
 };
 
 /// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `touches`: the

@@ -48,11 +48,7 @@ float offset_of(const Transform& m, const Box& bounds) {
 
 }  // namespace
 
-RayScene::RayScene(const Scene& scene) : scene_(&scene) {
-  for (const Material& material : scene.materials) materials_.push_back(std::make_shared<const Material>(material));
-  for (const Object& object : scene.objects)
-    objects_.push_back(std::make_unique<RayObject>(make_object(scene, object, scene.material(object.material))));
-}
+RayScene::RayScene(const Scene& scene) { update(scene, {}); }
 
 void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   scene_ = &scene;
@@ -61,19 +57,35 @@ void RayScene::update(const Scene& scene, const SceneDelta& delta) {
     *objects_[i] = make_object(scene, object, scene.material(object.material));
   };
   materials_.resize(scene.materials.size());
-  std::vector<bool> stale_material(scene.materials.size(), false);
-  for (const auto& change : delta.materials) {
+  for (const auto& change : delta.materials)
     materials_[change.id.index()] = std::make_shared<const Material>(scene.material(change.id));
-    stale_material[change.id.index()] = true;
-  }
   for (std::size_t i = 0; i < materials_.size(); ++i)
     if (!materials_[i]) materials_[i] = std::make_shared<const Material>(scene.materials[i]);
+  users_.resize(scene.materials.size());
   const std::size_t known = objects_.size();
   while (objects_.size() < scene.objects.size()) objects_.push_back(std::make_unique<RayObject>());
-  for (std::size_t i = known; i < objects_.size(); ++i) remake(i);
-  for (const auto& change : delta.objects) remake(change.id.index());
-  for (std::size_t i = 0; i < known && !delta.materials.empty(); ++i)
-    if (stale_material[scene.objects[i].material.index()]) remake(i);
+  for (std::size_t i = known; i < objects_.size(); ++i) {
+    remake(i);
+    users_[scene.objects[i].material.index()].emplace_back(static_cast<std::uint32_t>(i));
+  }
+  for (const auto& change : delta.objects) {
+    remake(change.id.index());
+    if (change.id.index() < known) move_user(change.id, change.before.material, scene.object(change.id).material);
+  }
+  for (const auto& change : delta.materials)
+    for (const ObjectId user : users_[change.id.index()]) {
+      RayObject& object = *objects_[user.index()];
+      object.material = materials_[change.id.index()];
+      object.optics = surface_optics(*object.material, *object.mesh);
+    }
+}
+
+void RayScene::move_user(ObjectId object, MaterialId from, MaterialId to) {
+  if (from == to) return;
+  std::vector<ObjectId>& old = users_[from.index()];
+  old.erase(std::ranges::lower_bound(old, object));
+  std::vector<ObjectId>& users = users_[to.index()];
+  users.insert(std::ranges::lower_bound(users, object), object);
 }
 
 RayObject RayScene::make_object(const Scene& scene, const Object& object, const Material& material) const {
