@@ -7,31 +7,46 @@ namespace relook {
 namespace {
 
 /// A compressed batch as what a residual kernel runs over.
-struct CompressedLanes {
-  const CompressedBatch& batch;
-  const BlockColors& colors;
+class CompressedLanes {
+ public:
+  CompressedLanes(const CompressedBatch& batch, const BlockColors& colors) : batch_(batch), colors_(colors) {}
 
   void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&,
             Scratch& scratch) const {
     if (step.op == Op::column) {
-      const CompressedBatch::Stored& stored = batch.columns[step.payload];
+      const CompressedBatch::Stored& stored = batch_.columns[step.payload];
       if (stored.first == CompressedBatch::kShared)
         std::fill_n(scratch.own(step.out), whole_vectors(lanes), stored.shared);
       else
-        scratch.at[step.out] = batch.values[stored.first + first / kVectorLanes].lanes.data();
+        scratch.at[step.out] = column_at(stored, first);
       return;
     }
+    load_color(step, first, lanes, scratch);
+  }
+
+ private:
+  /// More columns than a processor follows by itself are read side by side: what comes next is asked for now.
+  [[nodiscard]] const float* column_at(const CompressedBatch::Stored& stored, std::size_t first) const {
+    constexpr std::size_t kVectors = kLanes / kVectorLanes;
+    const CompressedBatch::Vector* column = batch_.values.data() + stored.first + first / kVectorLanes;
+    for (std::size_t k = kVectors; k < 2 * kVectors; ++k) __builtin_prefetch(column + k);
+    return column->lanes.data();
+  }
+  void load_color(const Kernel::Step& step, std::size_t first, std::size_t lanes, Scratch& scratch) const {
     const int channel = static_cast<int>(input_axis(step.payload));
     const std::uint32_t which = input_which(step.payload);
     float* out = scratch.own(step.out);
     if (input_of(step.payload) == Input::child) {
-      const std::uint32_t* slots = batch.child[which].data() + first;
-      for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = colors.nodes[slots[lane]][channel];
+      const std::uint32_t* slots = batch_.child[which].data() + first;
+      for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = colors_.nodes[slots[lane]][channel];
       return;
     }
-    const auto links = std::ranges::find(batch.tints, which, &std::pair<std::uint32_t, std::vector<LightLink>>::first);
-    for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = tint(links->second[first + lane], channel, colors);
+    const auto links = std::ranges::find(batch_.tints, which, &std::pair<std::uint32_t, std::vector<LightLink>>::first);
+    for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = tint(links->second[first + lane], channel, colors_);
   }
+
+  const CompressedBatch& batch_;
+  const BlockColors& colors_;
 };
 
 bool is_one_value(const float* values, std::size_t lanes) {
@@ -137,7 +152,7 @@ std::span<const Rgba> CompressedBlock::evaluate(const Scene& scene, ColorMemory&
   for (const auto& [slot, color] : known_filters) colors.filters[slot] = color;
   for (const CompressedBatch& batch : batches) {
     const Parameters parameters{scene, batch.material};
-    const CompressedLanes source{batch, colors};
+    const CompressedLanes source(batch, colors);
     KernelRun run(batch.program->residual, parameters, source, batch.lanes(), memory.scratch);
     std::vector<Rgba>& out = batch.are_filters ? colors.filters : colors.nodes;
     for (std::size_t first = 0; first < batch.lanes(); first += kLanes) {
