@@ -234,9 +234,13 @@ Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& reg
 }
 
 RegionOptions random_regions(Dice& dice) {
-  RegionOptions regions{dice.one_of(std::vector<std::size_t>{0, 1, 4}), dice.below(3),
-                        static_cast<std::uint32_t>(dice.below(3))};
-  std::cout << "groups " << regions.groups << ", tunnels " << regions.tunnels << ", atoms " << regions.atoms << "\n";
+  RegionOptions regions;
+  regions.groups = dice.one_of(std::vector<std::size_t>{0, 1, 4});
+  regions.tunnels = dice.below(3);
+  regions.atoms = static_cast<std::uint32_t>(dice.below(3));
+  regions.color_trees = dice.one_of(std::vector<double>{0, 0.01, 0.1, 1});
+  std::cout << "groups " << regions.groups << ", tunnels " << regions.tunnels << ", atoms " << regions.atoms
+            << ", color trees " << regions.color_trees << "\n";
   return regions;
 }
 

@@ -66,11 +66,12 @@ void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   while (objects_.size() < scene.objects.size()) objects_.push_back(std::make_unique<RayObject>());
   for (std::size_t i = known; i < objects_.size(); ++i) {
     remake(i);
-    users_[scene.objects[i].material.index()].emplace_back(static_cast<std::uint32_t>(i));
+    listed_.push_back(scene.objects[i].material);
+    users_[listed_[i].index()].emplace_back(static_cast<std::uint32_t>(i));
   }
   for (const auto& change : delta.objects) {
     remake(change.id.index());
-    if (change.id.index() < known) move_user(change.id, change.before.material, scene.object(change.id).material);
+    list_user(change.id, scene.object(change.id).material);
   }
   for (const auto& change : delta.materials)
     for (const ObjectId user : users_[change.id.index()]) {
@@ -80,11 +81,12 @@ void RayScene::update(const Scene& scene, const SceneDelta& delta) {
     }
 }
 
-void RayScene::move_user(ObjectId object, MaterialId from, MaterialId to) {
-  if (from == to) return;
-  std::vector<ObjectId>& old = users_[from.index()];
+void RayScene::list_user(ObjectId object, MaterialId material) {
+  if (listed_[object.index()] == material) return;
+  std::vector<ObjectId>& old = users_[listed_[object.index()].index()];
   old.erase(std::ranges::lower_bound(old, object));
-  std::vector<ObjectId>& users = users_[to.index()];
+  listed_[object.index()] = material;
+  std::vector<ObjectId>& users = users_[material.index()];
   users.insert(std::ranges::lower_bound(users, object), object);
 }
 

@@ -35,14 +35,14 @@ class RayScene {
   [[nodiscard]] std::size_t size() const { return objects_.size(); }
   [[nodiscard]] const Scene& scene() const { return *scene_; }
   [[nodiscard]] std::size_t material_count() const { return users_.size(); }
-  /// The objects that have a material, increasing.
+  /// The objects that have a material, increasing; dead ones may have got another one since they died.
   [[nodiscard]] const std::vector<ObjectId>& users_of(MaterialId id) const { return users_[id.index()]; }
 
   /// The entry of an object whose Object value and materials were others: for the selection before an edit.
   [[nodiscard]] RayObject make_object(const Scene& scene, const Object& object, const Material& material) const;
 
  private:
-  void move_user(ObjectId object, MaterialId from, MaterialId to);
+  void list_user(ObjectId object, MaterialId material);
   [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object) const;
 
   const Scene* scene_ = nullptr;
@@ -55,6 +55,7 @@ class RayScene {
   mutable std::vector<Displaced> displaced_;                // made once, while an object uses them
   std::vector<std::unique_ptr<RayObject>> objects_;         // by ObjectId; none moves or goes: top levels point to them
   std::vector<std::vector<ObjectId>> users_;                // by MaterialId
+  std::vector<MaterialId> listed_;                          // by ObjectId: among whose users it is
   std::vector<std::shared_ptr<const Material>> materials_;  // by MaterialId, shared by their objects
 };
 
