@@ -1,14 +1,11 @@
 #include "scene/image.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "base/error.h"
+#include "scene/image_library.h"
 #include "scene/image_stream.h"
 
 namespace relook {
@@ -43,39 +40,30 @@ class OpenImage {
     const std::string format = format_name(encoded);
     if (format.empty()) fail("it is not a PNG, JPEG, Radiance HDR or OpenEXR image");
     const BytesView stream = reduced(format, encoded);
-    memory_.emplace(stream.data(), stream.size());
-    input_ = OIIO::ImageInput::create(format);
-    if (!input_) fail("this OpenImageIO cannot read " + format);
-    OIIO::ImageSpec options;
-    options.attribute("oiio:UnassociatedAlpha", 1);
-    input_->set_ioproxy(&*memory_);
-    if (!input_->open("memory." + format, spec_, options)) fail(input_->geterror());
+    std::string error;
+    image_ = open_image(format.c_str(), stream, error);
+    if (!image_) fail(error);
+    spec_ = image_->spec();
     check_header(stream.size() * most_pixels_per_byte(format));
   }
-  ~OpenImage() {
-    if (input_) input_->close();
-  }
-  OpenImage(const OpenImage&) = delete;
-  OpenImage& operator=(const OpenImage&) = delete;
 
   [[nodiscard]] ImageHeader header() const {
     return {static_cast<std::uint32_t>(spec_.width), static_cast<std::uint32_t>(spec_.height),
-            spec_.format != OIIO::TypeDesc::UINT8};
+            spec_.type != TexelType::byte};
   }
-  [[nodiscard]] bool is_16_bit() const { return spec_.format == OIIO::TypeDesc::UINT16; }
+  [[nodiscard]] bool is_16_bit() const { return spec_.type == TexelType::word; }
   [[nodiscard]] std::size_t texel_count() const {
     return static_cast<std::size_t>(spec_.width) * static_cast<std::size_t>(spec_.height);
   }
 
   /// RGBA texels of a number type; grey spread over RGB, missing alpha `opaque`.
   template <class Number>
-  [[nodiscard]] std::vector<Number> texels(OIIO::TypeDesc type, Number opaque) {
+  [[nodiscard]] std::vector<Number> texels(TexelType type, Number opaque) {
     std::vector<Number> values;
     values.reserve(pyramid_texel_bound() * 4);  // build_pyramid() appends the smaller levels
     values.resize(texel_count() * 4, Number{0});
     const int channels = color_channels() + (has_alpha() ? 1 : 0);
-    const auto texel_bytes = static_cast<OIIO::stride_t>(4 * sizeof(Number));
-    if (!input_->read_image(0, 0, 0, channels, type, values.data(), texel_bytes)) fail(input_->geterror());
+    if (!image_->read(channels, type, values.data(), 4 * sizeof(Number))) fail(image_->error());
     for (std::size_t i = 0; i < values.size(); i += 4) {
       if (!has_alpha()) values[i + 3] = opaque;
       if (color_channels() > 1) continue;
@@ -94,9 +82,9 @@ class OpenImage {
     const auto sides = static_cast<std::size_t>(spec_.width) + static_cast<std::size_t>(spec_.height);
     return texel_count() + texel_count() / 3 + 2 * sides;
   }
-  [[nodiscard]] int color_channels() const { return spec_.nchannels >= 3 ? 3 : 1; }
+  [[nodiscard]] int color_channels() const { return spec_.channels >= 3 ? 3 : 1; }
   [[nodiscard]] bool has_alpha() const {
-    return spec_.nchannels > color_channels() && spec_.alpha_channel == color_channels();
+    return spec_.channels > color_channels() && spec_.alpha_channel == color_channels();
   }
   /// Leaves out of PNG and JPEG files what makes no pixels.
   BytesView reduced(const std::string& format, BytesView encoded) {
@@ -107,11 +95,11 @@ class OpenImage {
     return reduced_;
   }
   void check_header(std::uint64_t most_encoded_pixels) const {
-    if (spec_.width < 1 || spec_.height < 1 || spec_.depth > 1 || spec_.nchannels < 1)
+    if (spec_.width < 1 || spec_.height < 1 || spec_.depth > 1 || spec_.channels < 1)
       fail("it has no pixels, or is no plain image");
     const std::uint64_t count = std::uint64_t{static_cast<std::uint32_t>(spec_.width)} *
                                 std::uint64_t{static_cast<std::uint32_t>(spec_.height)};
-    const std::uint64_t texel_bytes = spec_.format == OIIO::TypeDesc::UINT8 ? 4 : 16;
+    const std::uint64_t texel_bytes = spec_.type == TexelType::byte ? 4 : 16;
     if (count > kMostImagePixels || count * texel_bytes > kMostDecodedBytes)
       fail(std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels are too many");
     if (count > most_encoded_pixels)
@@ -120,9 +108,8 @@ class OpenImage {
 
   std::string_view file_, where_;
   Bytes reduced_;
-  std::optional<OIIO::Filesystem::IOMemReader> memory_;
-  std::unique_ptr<OIIO::ImageInput> input_;
-  OIIO::ImageSpec spec_;
+  std::unique_ptr<ImageReader> image_;
+  ImageSpec spec_;
 };
 
 /// 16-bit values as linear floats; `color`: sRGB-encoded, but for alpha.
@@ -152,11 +139,11 @@ std::shared_ptr<const TexturePyramid> decode_pyramid(BytesView encoded, bool col
   if (!header.is_float) {
     const TexelFormat format = color ? TexelFormat::srgb8 : TexelFormat::linear8;
     return std::make_shared<const TexturePyramid>(
-        build_pyramid(format, header.width, header.height, image.texels<std::uint8_t>(OIIO::TypeDesc::UINT8, 255)));
+        build_pyramid(format, header.width, header.height, image.texels<std::uint8_t>(TexelType::byte, 255)));
   }
   std::vector<float> texels = image.is_16_bit()
-                                  ? linear_of_16_bit(image.texels<std::uint16_t>(OIIO::TypeDesc::UINT16, 65535), color)
-                                  : image.texels<float>(OIIO::TypeDesc::FLOAT, 1.0F);
+                                  ? linear_of_16_bit(image.texels<std::uint16_t>(TexelType::word, 65535), color)
+                                  : image.texels<float>(TexelType::real, 1.0F);
   for (float& value : texels) value = std::isfinite(value) ? std::clamp(value, 0.0F, kLargestTexel) : 0.0F;
   return std::make_shared<const TexturePyramid>(build_pyramid(header.width, header.height, std::move(texels)));
 }

@@ -1,5 +1,5 @@
-// Decoding of PNG, JPEG, Radiance HDR and OpenEXR bytes through OpenImageIO: format by magic number, header checked
-// against a pixel budget before anything is decoded. The only file that sees OpenImageIO for reading.
+// Decoding of PNG, JPEG, Radiance HDR and OpenEXR bytes through OpenImageIO (image_library.h): format by magic number,
+// header checked against a pixel budget before anything is decoded.
 #pragma once
 #include <cstdint>
 #include <map>

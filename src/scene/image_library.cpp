@@ -1,0 +1,37 @@
+#include "scene/image_library.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+namespace relook {
+namespace {
+
+constexpr const char* kModule = "librelook_images.so";
+
+OpenImageReader* load() {
+  std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  std::string reason;
+  for (const std::filesystem::path& path : {folder / kModule, folder.parent_path() / "lib" / "relook" / kModule}) {
+    if (!std::filesystem::exists(path, ignored)) continue;
+    void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);  // stays loaded
+    set_float_mode();  // what libraries do when they are loaded is theirs
+    void* function = module != nullptr ? dlsym(module, "relook_open_image") : nullptr;
+    if (function != nullptr) return reinterpret_cast<OpenImageReader*>(function);
+    if (const char* message = dlerror(); message != nullptr) reason = message;
+  }
+  throw Error(ExitCode::io, kModule, "", reason.empty() ? "is not beside the program: cannot decode images" : reason);
+}
+
+}  // namespace
+
+std::unique_ptr<ImageReader> open_image(const char* format, std::span<const std::byte> bytes, std::string& error) {
+  static OpenImageReader* const open = load();
+  return open(format, bytes, error);
+}
+
+}  // namespace relook

@@ -1,0 +1,57 @@
+// The module behind scene/image_library.h: decoding through OpenImageIO. The only file that sees it.
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "scene/image_library.h"
+
+namespace {
+
+class OiioImage final : public relook::ImageReader {
+ public:
+  explicit OiioImage(std::span<const std::byte> bytes) : memory_(bytes.data(), bytes.size()) {}
+  ~OiioImage() override {
+    if (input_) input_->close();
+  }
+
+  bool open(const std::string& format, std::string& error) {
+    input_ = OIIO::ImageInput::create(format);
+    if (!input_) {
+      error = "this OpenImageIO cannot read " + format;
+      return false;
+    }
+    OIIO::ImageSpec options;
+    options.attribute("oiio:UnassociatedAlpha", 1);
+    input_->set_ioproxy(&memory_);
+    if (input_->open("memory." + format, spec_, options)) return true;
+    error = input_->geterror();
+    return false;
+  }
+
+  [[nodiscard]] relook::ImageSpec spec() const override {
+    const relook::TexelType type = spec_.format == OIIO::TypeDesc::UINT8    ? relook::TexelType::byte
+                                   : spec_.format == OIIO::TypeDesc::UINT16 ? relook::TexelType::word
+                                                                            : relook::TexelType::real;
+    return {spec_.width, spec_.height, spec_.depth, spec_.nchannels, spec_.alpha_channel, type};
+  }
+  [[nodiscard]] bool read(int channels, relook::TexelType type, void* texels, std::size_t texel_bytes) override {
+    const OIIO::TypeDesc format = type == relook::TexelType::byte   ? OIIO::TypeDesc::UINT8
+                                  : type == relook::TexelType::word ? OIIO::TypeDesc::UINT16
+                                                                    : OIIO::TypeDesc::FLOAT;
+    return input_->read_image(0, 0, 0, channels, format, texels, static_cast<OIIO::stride_t>(texel_bytes));
+  }
+  [[nodiscard]] std::string error() const override { return input_->geterror(); }
+
+ private:
+  OIIO::Filesystem::IOMemReader memory_;
+  std::unique_ptr<OIIO::ImageInput> input_;
+  OIIO::ImageSpec spec_;
+};
+
+}  // namespace
+
+extern "C" std::unique_ptr<relook::ImageReader> relook_open_image(const char* format, std::span<const std::byte> bytes,
+                                                                   std::string& error) {
+  auto image = std::make_unique<OiioImage>(bytes);
+  if (!image->open(format, error)) return nullptr;
+  return image;
+}
