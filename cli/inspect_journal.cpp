@@ -38,6 +38,7 @@ Json step_json(const JournalStep& step, std::size_t number) {
           {"name", step.name},
           {"operations", step.edit.size()},
           {"drag_frames", step.drag.size()},
+          {"wedge_frames", step.wedge.size()},
           {"select", std::move(selected)}};
 }
 
@@ -49,9 +50,10 @@ void add_classification(Json& entry, const Classification& classification) {
 void print_step(const Json& entry, const std::string& label, Console& console) {
   std::string line = label + " \"" + printable(entry["name"].get<std::string>()) + "\"";
   if (!entry.contains("class")) {
-    const std::size_t frames = entry["drag_frames"].get<std::size_t>();
-    line += frames > 0 ? ": a drag of " + std::to_string(frames) + " frames"
-                       : ": " + std::to_string(entry["operations"].get<std::size_t>()) + " operations";
+    const std::size_t dragged = entry["drag_frames"].get<std::size_t>(), wedge = entry["wedge_frames"].get<std::size_t>();
+    line += dragged > 0 ? ": a drag of " + std::to_string(dragged) + " frames"
+            : wedge > 0 ? ": a wedge of " + std::to_string(wedge) + " values"
+                        : ": " + std::to_string(entry["operations"].get<std::size_t>()) + " operations";
     console.line(line);
     return;
   }
@@ -73,18 +75,20 @@ void inspect_journal(const Arguments& arguments, Console& console) {
     const JournalStep& step = journal.steps[i];
     const std::string label = std::to_string(i + 1);
     Json entry = step_json(step, i + 1);
-    if (state && step.drag.empty()) add_classification(entry, classify_edit(*state, step.edit, journal));
-    if (!state || step.drag.empty()) {
+    const bool has_frames = !step.drag.empty() || !step.wedge.empty();
+    if (state && !has_frames) add_classification(entry, classify_edit(*state, step.edit, journal));
+    if (!state || !has_frames) {
       print_step(entry, label, console);
       steps.push_back(std::move(entry));
       continue;
     }
-    for (std::size_t frame = 0; frame < step.drag.size(); ++frame) {
-      Json drag_entry = entry;
-      drag_entry["drag_frame"] = frame + 1;
-      add_classification(drag_entry, classify_edit(*state, step.drag[frame], journal));
-      print_step(drag_entry, label + "." + std::to_string(frame + 1), console);
-      steps.push_back(std::move(drag_entry));
+    const std::span<const Edit> frames = frames_of(step);
+    for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+      Json frame_entry = entry;
+      frame_entry[step.drag.empty() ? "wedge_frame" : "drag_frame"] = frame + 1;
+      add_classification(frame_entry, classify_edit(*state, frames[frame], journal));
+      print_step(frame_entry, label + "." + std::to_string(frame + 1), console);
+      steps.push_back(std::move(frame_entry));
     }
   }
   console.json({{"journal", journal.file}, {"hash", journal.hash}, {"steps", std::move(steps)}});

@@ -16,9 +16,8 @@ ChangeClass apply_step(SceneState& state, const Journal& journal, const JournalS
     const SceneDelta delta = apply_edit(state, edit, journal.file, journal.path.parent_path());
     return classify(state.scene(), delta).change;
   };
-  if (step.drag.empty()) return apply(step.edit);
   ChangeClass change = ChangeClass::color;
-  for (const Edit& entry : step.drag) change = combined(change, apply(entry));
+  for (const Edit& frame : frames_of(step)) change = combined(change, apply(frame));
   return change;
 }
 

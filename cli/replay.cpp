@@ -40,6 +40,7 @@ class JournalRun {
   void base_step();
   void edit_step(const JournalStep& step);
   void drag_step(const JournalStep& step);
+  void wedge_step(const JournalStep& step);
   static void fill(StepReport& entry, const StepResult& result);
   void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
   void verify(StepReport& entry);
@@ -91,10 +92,12 @@ std::uint64_t JournalRun::run() {
 void JournalRun::run_steps() {
   base_step();
   for (const JournalStep& step : journal_.steps) {
-    if (step.drag.empty())
-      edit_step(step);
-    else
+    if (!step.drag.empty())
       drag_step(step);
+    else if (!step.wedge.empty())
+      wedge_step(step);
+    else
+      edit_step(step);
   }
 }
 
@@ -151,6 +154,29 @@ void JournalRun::drag_step(const JournalStep& step) {
   finish(std::move(released), result, start);
 }
 
+void JournalRun::wedge_step(const JournalStep& step) {
+  const std::uint32_t number = report_.steps.back().step + 1;
+  StepReport last;
+  last.change = ChangeClass::color;
+  for (std::uint32_t i = 0; i < step.wedge.size(); ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    StepReport entry;
+    entry.step = number;
+    entry.name = step.name;
+    entry.wedge_frame = i + 1;
+    console_.check_interrupt();
+    const StepResult result = replayer_.step(step.wedge[i], journal_.file, journal_.path.parent_path());
+    fill(entry, result);
+    last.change = combined(last.change, entry.change);
+    last.counters.samples_total = entry.counters.samples_total;
+    finish(std::move(entry), result, start);
+  }
+  last.step = number;
+  last.name = step.name;
+  last.reasons = {"the last value of the wedge stays"};
+  finish(std::move(last), StepResult(), std::chrono::steady_clock::now());
+}
+
 void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {
   FrameMeta meta;
   meta.scene_hash = report_.scene_hash;
@@ -184,7 +210,7 @@ void JournalRun::verify(StepReport& entry) {
 
 void JournalRun::print(const StepReport& entry) {
   const Counters& counters = entry.counters;
-  std::string line = step_label(entry.step, entry.drag_frame) + " " + std::string(change_class_name(entry.change)) +
+  std::string line = step_label(entry.step, entry.frame_in_step()) + " " + std::string(change_class_name(entry.change)) +
                      " \"" + printable(entry.name) + "\": " + std::to_string(counters.pixels_changed) +
                      " pixels changed, " + std::to_string(counters.ray_updates) + " ray updates, " +
                      std::to_string(counters.shadow_updates) + " shadow updates, " +

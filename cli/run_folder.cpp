@@ -53,14 +53,19 @@ void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPi
     preview_encoder_.update(frame, changed_pixels);
   }
   if (is_first || !changed_pixels.empty()) preview_ = preview_encoder_.png();
-  meta.step = step_label(step.step, step.drag_frame);
+  meta.step = step_label(step.step, step.frame_in_step());
   meta.change_class = change_class_name(step.change);
-  const Bytes bytes = encoder_.exr(meta);
-  step.frame = frame_name(step.step, step.drag_frame);
-  step.preview = preview_name(step.step, step.drag_frame);
+  Bytes bytes = encoder_.exr(meta);
+  step.frame = frame_name(step.step, step.frame_in_step());
+  step.preview = preview_name(step.step, step.frame_in_step());
   step.frame_hash = hash128(bytes);
-  write_file(path_ / step.frame, bytes);
-  write_file(path_ / step.preview, preview_);
+  finish_writing();
+  writing_ = std::async(std::launch::async,
+                        [frame_path = path_ / step.frame, preview_path = path_ / step.preview, bytes = std::move(bytes),
+                         preview = preview_] {
+                          write_file(frame_path, bytes);
+                          write_file(preview_path, preview);
+                        });
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
@@ -80,7 +85,12 @@ void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer,
     write("groups", [&](Frame& frame, std::size_t tile) { draw_groups(frame, tile, replayer.regions().groups(tile)); });
 }
 
-void RunFolder::write_report(const RunReport& report) const {
+void RunFolder::finish_writing() {
+  if (writing_.valid()) writing_.get();
+}
+
+void RunFolder::write_report(const RunReport& report) {
+  finish_writing();
   write_file(path_ / "report.json", report_json(report).dump(2) + "\n");
 }
 

@@ -2,6 +2,7 @@
 // run are removed first.
 #pragma once
 #include <filesystem>
+#include <future>
 #include <span>
 #include <string>
 
@@ -22,17 +23,21 @@ class RunFolder {
   RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format);
 
   /// Writes the frame and preview of a step and sets step.frame, frame_hash, preview and seconds.write. Only tiles of
-  /// changed pixels are compressed again. `meta.step` and `meta.change_class` are taken from `step`.
+  /// changed pixels are compressed again. The files are written while the next step runs: what goes wrong with them is
+  /// thrown by the next call. `meta.step` and `meta.change_class` are taken from `step`.
   void write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels, FrameMeta meta);
   /// Writes overlays/<step>_<kind>.png: leaves that depend on the selection, leaves whose tunnels it may touch, groups.
   void write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result) const;
-  void write_report(const RunReport& report) const;
+  void write_report(const RunReport& report);
 
  private:
+  void finish_writing();
+
   std::filesystem::path path_;
   FrameEncoder encoder_;
   PreviewEncoder preview_encoder_;
   Bytes preview_;  // of the last frame; empty before the first
+  std::future<void> writing_;
 };
 
 }  // namespace relook

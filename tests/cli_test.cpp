@@ -129,6 +129,28 @@ TEST_F(Cli, replay_writes_frames_previews_and_a_report) {
   EXPECT_EQ(report["interrupted"], false);
 }
 
+TEST_F(Cli, a_wedge_gives_a_frame_for_each_value_and_keeps_the_last) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("w.json"), R"({"relook": "journal/1", "steps": [
+    {"wedge": {"path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor/0",
+               "range": {"from": 0.1, "to": 0.9, "count": 3}}},
+    {"wedge": {"path": "/materials/Glass/extensions/KHR_materials_ior/ior", "values": [1.2, 1.7]}}]})");
+  ASSERT_EQ(relook({"replay", at("c"), at("w.json"), "-o", at("run"), "--verify", "--quiet"}).exit_code, 0);
+  const Json steps = read_json(at("run/report.json"))["steps"];
+  ASSERT_EQ(steps.size(), 8U);
+  for (const char* name : {"0000", "0001_01", "0001_03", "0001", "0002_02", "0002"})
+    EXPECT_TRUE(std::filesystem::exists(at("run/frames/" + std::string(name) + ".exr"))) << name;
+  EXPECT_EQ(steps[2]["wedge_frame"], 2);
+  EXPECT_EQ(steps[2]["class"], "color");
+  EXPECT_GT(steps[2]["pixels_changed"], 0);
+  EXPECT_TRUE(steps[4]["wedge_frame"].is_null());
+  EXPECT_EQ(steps[4]["pixels_changed"], 0);
+  EXPECT_EQ(steps[7]["class"], "optical");
+  write_text(at("bad.json"), R"({"relook": "journal/1", "steps": [
+    {"wedge": {"path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor/0", "values": [0.1, "red"]}}]})");
+  expect_error(relook({"replay", at("c"), at("bad.json"), "-o", at("bad")}), 2, "/steps/0/wedge/values/1");
+}
+
 TEST_F(Cli, frames_are_the_same_bytes_in_every_run_and_for_any_thread_count) {
   ASSERT_EQ(preprocess("c").exit_code, 0);
   write_text(at("j.json"), kJournal);

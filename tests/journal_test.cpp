@@ -59,6 +59,35 @@ TEST_F(JournalFile, reads_steps_edits_and_drags) {
   EXPECT_EQ(journal.steps[1].drag[0][0].where, "/steps/1/drag/0/0");
 }
 
+TEST_F(JournalFile, reads_wedges_as_one_edit_a_value) {
+  const Journal journal = read(R"({"relook": "journal/1", "steps": [
+    {"wedge": {"path": "/lights/Key/intensity", "values": [10, 20]}},
+    {"wedge": {"path": "/lights/Key/color", "range": {"from": [0, 1, 0.5], "to": [1, 0, 0.5], "count": 3}}}]})");
+  ASSERT_EQ(journal.steps.size(), 2U);
+  ASSERT_EQ(journal.steps[0].wedge.size(), 2U);
+  const PatchOperation& second = journal.steps[0].wedge[1].at(0);
+  EXPECT_EQ(second.op, PatchOp::replace);
+  EXPECT_EQ(second.path, "/lights/Key/intensity");
+  EXPECT_EQ(second.value, 20);
+  EXPECT_EQ(second.value_where, "/steps/0/wedge/values/1");
+  ASSERT_EQ(journal.steps[1].wedge.size(), 3U);
+  EXPECT_EQ(journal.steps[1].wedge[0][0].value, Json({0.0, 1.0, 0.5}));
+  EXPECT_EQ(journal.steps[1].wedge[1][0].value, Json({0.5, 0.5, 0.5}));
+  EXPECT_EQ(journal.steps[1].wedge[2][0].value, Json({1.0, 0.0, 0.5}));
+}
+
+TEST_F(JournalFile, refuses_what_is_no_wedge) {
+  const auto wedge = [&](const std::string& text) { return refusal("[{\"wedge\": " + text + "}]"); };
+  EXPECT_EQ(wedge(R"({"path": "/a"})"), "/steps/0/wedge: a wedge has either \"values\" or \"range\"");
+  EXPECT_EQ(wedge(R"({"path": "/a", "values": []})"), "/steps/0/wedge/values: expected 1 to 10000 values");
+  EXPECT_NE(wedge(R"({"path": "/a", "range": {"from": 0, "to": 1, "count": 1}})").find("/steps/0/wedge/range/count"),
+            std::string::npos);
+  EXPECT_EQ(wedge(R"({"path": "/a", "range": {"from": [0, 1], "to": [1], "count": 2}})"),
+            "/steps/0/wedge/range/to: expected as many numbers as in \"from\"");
+  EXPECT_EQ(refusal(R"([{"wedge": {"path": "/a", "values": [1]}, "edit": []}])"),
+            "/steps/0: a step with \"wedge\" has nothing else");
+}
+
 TEST_F(JournalFile, an_empty_journal_is_fine) {
   EXPECT_TRUE(read(R"({"relook": "journal/1", "steps": []})").steps.empty());
 }

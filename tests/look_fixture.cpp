@@ -148,6 +148,7 @@ Edit edit_of(const std::string& json_array) {
     operation.from = item.value("from", "");
     operation.value = item.value("value", Json());
     operation.where = "/edit/" + std::to_string(edit.size());
+    operation.value_where = operation.where + "/value";
     edit.push_back(std::move(operation));
   }
   return edit;

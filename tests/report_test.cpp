@@ -139,6 +139,7 @@ TEST(Report, has_every_name_of_version_1) {
                            "name",
                            "class",
                            "drag_frame",
+                           "wedge_frame",
                            "frame",
                            "samples_total",
                            "samples_affected",

@@ -242,6 +242,7 @@ Edit edit_of(const Json& operations) {
     next.from = operation.value("from", std::string());
     if (operation.contains("value")) next.value = operation.at("value");
     next.where = "/edit/" + std::to_string(edit.size());
+    next.value_where = next.where + "/value";
     edit.push_back(std::move(next));
   }
   return edit;
@@ -254,6 +255,7 @@ Edit replace_edit(const std::string& pointer, Json value) {
   operation.path = pointer;
   operation.value = std::move(value);
   operation.where = "/edit/0";
+  operation.value_where = "/edit/0/value";
   return {operation};
 }
 

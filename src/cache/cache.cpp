@@ -171,8 +171,10 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
     findings.push_back({CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"});
 
   const std::vector<PartFile> parts = parts_of(content.camera);
-  constexpr std::size_t kFirstTrees = 5;
-  std::vector<CacheAnswer> answers = read_parts(std::span(parts).first(kFirstTrees), reading);
+  // Trees are checked against the paths, and take over pixels of the frame; everything else can be read beside them.
+  constexpr std::size_t kPaths = 4, kFrame = 3, kFirstTrees = 5;
+  require(parts[kPaths].part == Part::paths && parts[kFrame].part == Part::frame, "parts have their places");
+  std::vector<CacheAnswer> answers = read_parts(std::span(parts).subspan(kFrame, 2), reading);
   if (is_sound(answers)) {
     const PathLayout layout{content.lights, content.shadow_bits};
     for (std::size_t i = 0; i < content.paths.size(); ++i)
@@ -180,9 +182,13 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
     const std::size_t tiles = cache_tile_count(content.camera);
     content.trees.resize(tiles);
     content.sample_colors.resize(tiles);
-    const auto trees = read_parts(std::span(parts).subspan(kFirstTrees), reading);
-    answers.insert(answers.end(), trees.begin(), trees.end());
   }
+  // The look document takes longest and comes first.
+  std::vector<PartFile> rest(parts.begin(), parts.begin() + kFrame);
+  if (is_sound(answers)) rest.insert(rest.end(), parts.begin() + kFirstTrees, parts.end());
+  const std::vector<CacheAnswer> others = read_parts(rest, reading);
+  answers.insert(answers.begin(), others.begin(), others.begin() + kFrame);
+  answers.insert(answers.end(), others.begin() + kFrame, others.end());
   std::copy_if(answers.begin(), answers.end(), std::back_inserter(findings),
                [](const CacheAnswer& answer) { return answer.fault != CacheFault::none; });
   return findings;

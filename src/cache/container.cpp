@@ -45,6 +45,16 @@ void group_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
 void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
   const std::size_t count = in.size() / stride;
   const std::byte* next = in.data();
+  if (stride == 4) {  // most columns: in one go, which the compiler vectorises
+    const auto* bytes = reinterpret_cast<const unsigned char*>(next);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t value = static_cast<std::uint32_t>(bytes[i]) | static_cast<std::uint32_t>(bytes[count + i]) << 8 |
+                                  static_cast<std::uint32_t>(bytes[2 * count + i]) << 16 |
+                                  static_cast<std::uint32_t>(bytes[3 * count + i]) << 24;
+      std::memcpy(out + i * sizeof value, &value, sizeof value);
+    }
+    return;
+  }
   for (std::size_t k = 0; k < stride; ++k)
     for (std::size_t i = 0; i < count; ++i) out[i * stride + k] = *next++;
 }

@@ -29,8 +29,8 @@ struct CacheDamage : std::runtime_error {
   CacheFault fault;
 };
 /// Throws CacheDamage{damaged, detail} unless `sound`.
-inline void check_sound(bool sound, const std::string& detail) {
-  if (!sound) throw CacheDamage(CacheFault::damaged, detail);
+inline void check_sound(bool sound, std::string_view detail, std::string_view of_what = "") {
+  if (!sound) throw CacheDamage(CacheFault::damaged, std::string(detail).append(of_what));
 }
 
 /// Types whose bytes are their value (Imath's types are, without being trivially copyable).

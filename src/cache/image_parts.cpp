@@ -30,7 +30,7 @@ Rect tile_rect_of(const Camera& camera, std::size_t tile) {
 void check_colors(const std::vector<Rgba>& colors, const char* section) {
   for (const Rgba& color : colors)
     check_sound(std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b) && std::isfinite(color.a),
-                std::string("a number that is not finite in section ") + section);
+                "a number that is not finite in section ", section);
 }
 
 /// Tile by tile, in tile order, the pixels of the frame.
@@ -161,7 +161,7 @@ struct GroupColumns {
 void check_weights(const std::vector<float>& weights, const char* section) {
   constexpr float kLargestWeight = 2;
   for (const float weight : weights)
-    check_sound(std::abs(weight) <= kLargestWeight, std::string("a weight beyond a triangle in section ") + section);
+    check_sound(std::abs(weight) <= kLargestWeight, "a weight beyond a triangle in section ", section);
 }
 
 GroupColumns read_columns(const ContainerReader& reader, std::uint64_t samples, bool has_colors,

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "build_hash.h"
 #include "trace/shadow_counter.h"
 
 namespace relook {

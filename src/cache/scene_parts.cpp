@@ -20,7 +20,7 @@ void check_numbers(const std::vector<T>& values, const char* section) {
   const std::span<const float> numbers(reinterpret_cast<const float*>(values.data()),
                                        values.size() * (sizeof(T) / sizeof(float)));
   for (const float number : numbers)
-    check_sound(std::abs(number) <= kLargestNumber, std::string("a number that is not finite in section ") + section);
+    check_sound(std::abs(number) <= kLargestNumber, "a number that is not finite in section ", section);
 }
 
 /// Hands out the values of a column from the front.
@@ -139,9 +139,10 @@ Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
        {mesh.normals.size(), mesh.tangents.size(), mesh.uv[0].size(), mesh.uv[1].size(), mesh.colors.size()})
     check_sound(size == 0 || size == mesh.positions.size(),
                 "columns of mesh " + printable(mesh.name) + " differ in length");
+  const std::string name = printable(mesh.name);
   for (const auto& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle)
-      check_sound(vertex < mesh.positions.size(), "a vertex that does not exist in mesh " + printable(mesh.name));
+      check_sound(vertex < mesh.positions.size(), "a vertex that does not exist in mesh ", name);
   return mesh;
 }
 

@@ -55,7 +55,7 @@ std::shared_ptr<const TexturePyramid> read_pyramid(const JsonView& entry, const 
   if (pyramid->format == TexelFormat::float32) {
     pyramid->texels32 = reader.column<float>(blob, texels * 4);
     for (const float value : pyramid->texels32)
-      check_sound(std::isfinite(value), "a number that is not finite in section " + blob);
+      check_sound(std::isfinite(value), "a number that is not finite in section ", blob);
   } else {
     pyramid->texels8 = reader.column<std::uint8_t>(blob, texels * 4);
   }

@@ -68,10 +68,10 @@ void check_journal(SceneState& state, const Journal& journal) {
   };
   try {
     for (const JournalStep& step : journal.steps) {
-      if (step.drag.empty()) rehearse(step.edit);
-      for (std::size_t entry = 0; entry < step.drag.size(); ++entry) {
-        check_drag_scope(state, step, entry, journal.file);
-        rehearse(step.drag[entry]);
+      const std::span<const Edit> frames = frames_of(step);
+      for (std::size_t entry = 0; entry < frames.size(); ++entry) {
+        if (!step.drag.empty()) check_drag_scope(state, step, entry, journal.file);
+        rehearse(frames[entry]);
       }
     }
   } catch (...) {

@@ -19,6 +19,7 @@ std::string read_pointer(const JsonView& view) {
 PatchOperation read_operation(const JsonView& view) {
   PatchOperation operation;
   operation.where = view.pointer();
+  operation.value_where = operation.where + "/value";
   operation.op = static_cast<PatchOp>(view.at("op").one_of(kOperations));
   const bool has_from = operation.op == PatchOp::move || operation.op == PatchOp::copy;
   const bool has_value = !has_from && operation.op != PatchOp::remove;
@@ -54,19 +55,81 @@ std::vector<std::string> read_selection(const JsonView& view) {
   return selection;
 }
 
+constexpr std::size_t kMostWedgeValues = 10'000;
+
+/// `values` evenly spaced from `range.from` to `range.to`, numbers or arrays of numbers.
+std::vector<Json> spaced_values(const JsonView& range) {
+  constexpr std::array<std::string_view, 3> kKeys{"from", "to", "count"};
+  constexpr double kLargest = 1e30;
+  range.only_keys(kKeys);
+  const auto count = static_cast<std::size_t>(range.at("count").integer(2, kMostWedgeValues));
+  const auto between = [&](const JsonView& from, const JsonView& to, std::size_t i) -> Json {
+    const double a = from.number(-kLargest, kLargest), b = to.number(-kLargest, kLargest);
+    return i + 1 == count ? b : a + (b - a) * static_cast<double>(i) / static_cast<double>(count - 1);
+  };
+  const JsonView from = range.at("from"), to = range.at("to");
+  std::vector<Json> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!from.value().is_array()) {
+      values.push_back(between(from, to, i));
+      continue;
+    }
+    to.require_array();
+    if (to.size() != from.size()) to.fail("expected as many numbers as in \"from\"");
+    values.push_back(Json::array());
+    for (std::size_t k = 0; k < from.size(); ++k) values.back().push_back(between(from.at(k), to.at(k), i));
+  }
+  return values;
+}
+
+/// One "replace" for each value.
+std::vector<Edit> read_wedge(const JsonView& view) {
+  constexpr std::array<std::string_view, 3> kKeys{"path", "values", "range"};
+  view.only_keys(kKeys);
+  if (view.has("values") == view.has("range")) view.fail("a wedge has either \"values\" or \"range\"");
+  std::vector<Json> values;
+  if (view.has("range")) {
+    values = spaced_values(view.at("range"));
+  } else {
+    const JsonView list = view.at("values");
+    list.require_array();
+    if (list.size() == 0 || list.size() > kMostWedgeValues)
+      list.fail("expected 1 to " + std::to_string(kMostWedgeValues) + " values");
+    for (std::size_t i = 0; i < list.size(); ++i) values.push_back(list.at(i).value());
+  }
+  std::vector<Edit> wedge;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    PatchOperation operation;
+    operation.op = PatchOp::replace;
+    operation.path = read_pointer(view.at("path"));
+    operation.value = std::move(values[i]);
+    operation.where = view.pointer();
+    operation.value_where =
+        view.has("range") ? view.pointer() + "/range" : view.pointer() + "/values/" + std::to_string(i);
+    wedge.push_back({std::move(operation)});
+  }
+  return wedge;
+}
+
 JournalStep read_step(const JsonView& view, std::size_t number) {
-  constexpr std::array<std::string_view, 4> kKeys{"name", "edit", "select", "drag"};
+  constexpr std::array<std::string_view, 5> kKeys{"name", "edit", "select", "drag", "wedge"};
   view.only_keys(kKeys);
   JournalStep step;
   step.where = view.pointer();
   step.name = view.has("name") ? view.at("name").text() : "step " + std::to_string(number);
   const bool has_edit = view.has("edit"), has_drag = view.has("drag");
+  if (view.has("wedge")) {
+    if (has_edit || has_drag || view.has("select")) view.fail("a step with \"wedge\" has nothing else");
+    step.wedge = read_wedge(view.at("wedge"));
+    return step;
+  }
   if (has_edit && (has_drag || view.has("select"))) view.fail("a step has either \"edit\" or \"select\" and \"drag\"");
   if (has_edit) {
     step.edit = read_edit(view.at("edit"));
     return step;
   }
-  if (!has_drag && !view.has("select")) view.fail("a step needs \"edit\", or \"select\" and \"drag\"");
+  if (!has_drag && !view.has("select"))
+    view.fail("a step needs \"edit\", \"wedge\", or \"select\" and \"drag\"");
   step.select = read_selection(view.at("select"));
   const JsonView drag = view.at("drag");
   drag.require_array();

@@ -1,6 +1,7 @@
 // journal/1: steps of RFC 6902 edits on the look document, read strictly. Nothing here knows pixels.
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,17 +16,26 @@ struct PatchOperation {
   std::string path;   // as written
   std::string from;   // move, copy
   Json value;         // add, replace, test
-  std::string where;  // pointer into the journal: "/steps/3/edit/0"
+  std::string where;  // pointer into the journal: "/steps/3/edit/0"; its path is below it
+  std::string value_where;  // pointer to the value: "/steps/3/edit/0/value"
 };
 using Edit = std::vector<PatchOperation>;
 
 struct JournalStep {
   std::string name;
-  Edit edit;                        // empty for a drag
+  Edit edit;                        // empty for a drag and a wedge
   std::vector<std::string> select;  // drag: "/nodes/<name>" pointers
   std::vector<Edit> drag;           // one intermediate frame each; the last is committed
+  std::vector<Edit> wedge;          // one parameter, one value and one frame each; the last stays
   std::string where;                // "/steps/3"
 };
+
+/// The frames of a step, each an edit: those of a drag or a wedge, or the one of a plain edit.
+[[nodiscard]] inline std::span<const Edit> frames_of(const JournalStep& step) {
+  if (!step.drag.empty()) return step.drag;
+  if (!step.wedge.empty()) return step.wedge;
+  return {&step.edit, 1};
+}
 
 struct Journal {
   std::filesystem::path path;  // where it was read; assets and images it names lie below its folder

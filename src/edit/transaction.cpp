@@ -162,7 +162,7 @@ Json& Transaction::replaced_value(const Tokens& path, const PatchPlace& place) {
 void Transaction::run_test(const Resolved& resolved, const PatchPlace& place) {
   const Json& value = value_at(document().look, resolved.path, place);
   if (value == resolved.operation->value) return;
-  throw InputError(file_, resolved.operation->where + "/value",
+  throw InputError(file_, resolved.operation->value_where,
                    "the test failed: " + pointer_text(resolved.path) + " is " + short_text(value));
 }
 
@@ -232,7 +232,7 @@ void Transaction::normalize_entity(const TouchedEntity& entity, const Resolved& 
   name_indices(document(), *section, *value);
   const bool is_whole = resolved.path.size() <= 2;
   const bool names_uri = resolved.path.size() == 3 && resolved.path[2] == "uri";
-  const PatchPlace place{file_, resolved.operation->where + "/value"};
+  const PatchPlace place{file_, resolved.operation->value_where};
   if (*section == Section::nodes && value->contains("asset")) {
     merge_asset(entity.name, {file_, is_whole ? place.where + "/asset" : place.where});
     value = find(entity);
@@ -291,7 +291,7 @@ void Transaction::rethrow(const LookError& error, const std::vector<Resolved>& d
       const bool is_unknown_place = error.pointer == path && error.reason.starts_with("unknown key");
       if (is_unknown_place) throw InputError(file_, resolved.operation->where + "/path", error.reason);
       if (op == PatchOp::add || op == PatchOp::replace)
-        throw InputError(file_, resolved.operation->where + "/value" + error.pointer.substr(path.size()), error.reason);
+        throw InputError(file_, resolved.operation->value_where + error.pointer.substr(path.size()), error.reason);
       culprit = &resolved;
     } else if (path.starts_with(error.pointer + "/") || culprit == nullptr || op == PatchOp::remove) {
       culprit = &resolved;

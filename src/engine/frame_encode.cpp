@@ -1,8 +1,8 @@
 // Writes frames: our own ZIP compression of tiles (OpenEXR's: bytes split by significance, differences, deflate) handed
 // as ready-made chunks to OpenEXR's core, which lays out the file.
 #include <half.h>
+#include <libdeflate.h>
 #include <openexr.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "base/error.h"
@@ -20,6 +21,10 @@ namespace relook {
 namespace {
 
 constexpr int kDeflateLevel = 4;
+
+struct FreeCompressor {
+  void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
+};
 constexpr float kLargestHalf = 65504.0F;
 
 static_assert(std::endian::native == std::endian::little, "OpenEXR files are little-endian");
@@ -59,12 +64,12 @@ Bytes zip(const std::vector<unsigned char>& raw) {
   for (std::size_t i = 0; i < raw.size(); ++i) split[i / 2 + (i % 2 == 0 ? 0 : first_odd)] = raw[i];
   for (std::size_t i = split.size(); i-- > 1;) split[i] = static_cast<unsigned char>(split[i] - split[i - 1] + 128);
 
-  uLongf packed_size = compressBound(static_cast<uLong>(split.size()));
-  Bytes packed(packed_size);
-  const int result = compress2(reinterpret_cast<Bytef*>(packed.data()), &packed_size, split.data(),
-                               static_cast<uLong>(split.size()), kDeflateLevel);
-  if (result == Z_MEM_ERROR) throw std::bad_alloc();
-  require(result == Z_OK, "deflate into a buffer of its own bound succeeds");
+  const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(libdeflate_alloc_compressor(kDeflateLevel));
+  if (!compressor) throw std::bad_alloc();
+  Bytes packed(libdeflate_zlib_compress_bound(compressor.get(), split.size()));
+  const std::size_t packed_size =
+      libdeflate_zlib_compress(compressor.get(), split.data(), split.size(), packed.data(), packed.size());
+  require(packed_size > 0, "deflate into a buffer of its own bound succeeds");
   if (packed_size >= raw.size()) {
     packed.resize(raw.size());
     std::memcpy(packed.data(), raw.data(), raw.size());

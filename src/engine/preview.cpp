@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <new>
 #include <numeric>
@@ -24,10 +25,30 @@ std::array<float, 255> srgb_boundaries() {
   return boundary;
 }
 
-unsigned char srgb_code(const std::array<float, 255>& boundary, float linear) {
-  if (std::isnan(linear)) return 0;
-  return static_cast<unsigned char>(std::upper_bound(boundary.begin(), boundary.end(), linear) - boundary.begin());
-}
+/// Codes of linear values: by the first bits of the number, then by the few boundaries among numbers with these bits.
+class SrgbCodes {
+ public:
+  SrgbCodes() : boundary_(srgb_boundaries()) {
+    for (std::uint32_t k = 0; k < first_.size(); ++k) first_[k] = slow_code(std::bit_cast<float>((k + kLowest) << kShift));
+  }
+  [[nodiscard]] unsigned char of(float linear) const {
+    if (!(linear > 0x1p-13F)) return 0;  // NaN, too
+    if (linear >= 1.0F) return 255;
+    unsigned char code = first_[(std::bit_cast<std::uint32_t>(linear) >> kShift) - kLowest];
+    while (code < 255 && linear >= boundary_[code]) ++code;
+    return code;
+  }
+
+ private:
+  static constexpr unsigned kShift = 16;                                                    // 128 steps an octave
+  static constexpr std::uint32_t kLowest = (127U - 13U) << (23 - kShift), kEnd = 127U << (23 - kShift);
+  [[nodiscard]] unsigned char slow_code(float linear) const {
+    return static_cast<unsigned char>(std::upper_bound(boundary_.begin(), boundary_.end(), linear) - boundary_.begin());
+  }
+
+  std::array<float, 255> boundary_;
+  std::array<unsigned char, kEnd - kLowest> first_{};  // code of the smallest number with these bits
+};
 
 void append(Bytes& out, BytesView data) {
   const std::size_t start = out.size();
@@ -52,7 +73,7 @@ constexpr std::uint32_t kBandRows = 64;
 
 /// Rows of 3 bytes a pixel, each led by its filter (1: differences to the left neighbour).
 std::vector<unsigned char> filtered_rows(const Frame& frame, std::uint32_t first_row, std::uint32_t last_row) {
-  const std::array<float, 255> boundary = srgb_boundaries();
+  static const SrgbCodes codes_of;
   std::vector<unsigned char> rows((1 + std::size_t{frame.width} * 3) * (last_row - first_row));
   unsigned char* out = rows.data();
   for (std::uint32_t y = first_row; y < last_row; ++y) {
@@ -60,8 +81,7 @@ std::vector<unsigned char> filtered_rows(const Frame& frame, std::uint32_t first
     std::array<unsigned char, 3> left{};
     for (std::size_t x = 0; x < frame.width; ++x) {
       const Rgba& pixel = frame.pixels[std::size_t{y} * frame.width + x];
-      const std::array<unsigned char, 3> codes{srgb_code(boundary, pixel.r), srgb_code(boundary, pixel.g),
-                                               srgb_code(boundary, pixel.b)};
+      const std::array<unsigned char, 3> codes{codes_of.of(pixel.r), codes_of.of(pixel.g), codes_of.of(pixel.b)};
       for (std::size_t c = 0; c < 3; ++c) *out++ = static_cast<unsigned char>(codes[c] - left[c]);
       left = codes;
     }

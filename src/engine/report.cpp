@@ -24,10 +24,10 @@ std::string cpu_model() {
 }
 
 std::string numbered(const char* folder, const char* suffix, std::uint32_t step,
-                     std::optional<std::uint32_t> drag_frame) {
+                     std::optional<std::uint32_t> frame_in_step) {
   char name[64];
-  if (drag_frame)
-    std::snprintf(name, sizeof name, "%s/%04u_%02u%s", folder, step, *drag_frame, suffix);
+  if (frame_in_step)
+    std::snprintf(name, sizeof name, "%s/%04u_%02u%s", folder, step, *frame_in_step, suffix);
   else
     std::snprintf(name, sizeof name, "%s/%04u%s", folder, step, suffix);
   return name;
@@ -65,6 +65,7 @@ Json step_json(const StepReport& step) {
       {"class", change_class_name(step.change)},
       {"reasons", step.reasons},
       {"drag_frame", or_null(step.drag_frame)},
+      {"wedge_frame", or_null(step.wedge_frame)},
       {"frame", step.frame},
       {"frame_hash", step.frame_hash},
       {"preview", step.preview},
@@ -115,18 +116,18 @@ ChangeClass combined(ChangeClass a, ChangeClass b) {
   return std::max(a, b);
 }
 
-std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
-  return numbered("frames", ".exr", step, drag_frame);
+std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step) {
+  return numbered("frames", ".exr", step, frame_in_step);
 }
 
-std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
-  return numbered("previews", ".png", step, drag_frame);
+std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step) {
+  return numbered("previews", ".png", step, frame_in_step);
 }
 
-std::string step_label(std::uint32_t step, std::optional<std::uint32_t> drag_frame) {
+std::string step_label(std::uint32_t step, std::optional<std::uint32_t> frame_in_step) {
   char label[32];
-  if (drag_frame)
-    std::snprintf(label, sizeof label, "%u_%02u", step, *drag_frame);
+  if (frame_in_step)
+    std::snprintf(label, sizeof label, "%u_%02u", step, *frame_in_step);
   else
     std::snprintf(label, sizeof label, "%u", step);
   return label;

@@ -31,7 +31,9 @@ struct StepReport {
   std::string name;
   ChangeClass change = ChangeClass::base;
   std::vector<std::string> reasons;
-  std::optional<std::uint32_t> drag_frame;  // 1.. for the intermediate frames of a drag
+  std::optional<std::uint32_t> drag_frame;   // 1.. for the intermediate frames of a drag
+  std::optional<std::uint32_t> wedge_frame;  // 1.. for the values of a wedge
+  [[nodiscard]] std::optional<std::uint32_t> frame_in_step() const { return drag_frame ? drag_frame : wedge_frame; }
   std::string frame, frame_hash, preview;   // files relative to the run directory; XXH3-128 of the frame's bytes
   Counters counters;
   Seconds seconds;
@@ -73,10 +75,10 @@ struct RunReport {
 [[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
 
 /// "frames/0003.exr", "frames/0003_01.exr".
-[[nodiscard]] std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
-[[nodiscard]] std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
+[[nodiscard]] std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step);
+[[nodiscard]] std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step);
 /// "3", "3_01".
-[[nodiscard]] std::string step_label(std::uint32_t step, std::optional<std::uint32_t> drag_frame);
+[[nodiscard]] std::string step_label(std::uint32_t step, std::optional<std::uint32_t> frame_in_step);
 
 /// Largest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_rss_bytes();

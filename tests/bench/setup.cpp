@@ -65,7 +65,8 @@ void keep_faster(TimedStep& best, TimedStep step) {
 
 Edit whole_edit(const JournalStep& step) {
   Edit whole = step.edit;
-  for (const Edit& entry : step.drag) whole.insert(whole.end(), entry.begin(), entry.end());
+  for (const auto* frames : {&step.drag, &step.wedge})
+    for (const Edit& entry : *frames) whole.insert(whole.end(), entry.begin(), entry.end());
   return whole;
 }
 
