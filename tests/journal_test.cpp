@@ -110,7 +110,7 @@ TEST_F(JournalFile, refuses_what_is_no_journal) {
 }
 
 TEST_F(JournalFile, refuses_steps_without_one_meaning) {
-  EXPECT_EQ(refusal("[{}]"), "/steps/0: a step needs \"edit\", or \"select\" and \"drag\"");
+  EXPECT_EQ(refusal("[{}]"), "/steps/0: a step needs \"edit\", \"wedge\", or \"select\" and \"drag\"");
   EXPECT_EQ(refusal(R"([{"edit": [], "drag": [[]]}])"),
             "/steps/0: a step has either \"edit\" or \"select\" and \"drag\"");
   EXPECT_EQ(refusal(R"([{"drag": [[]]}])"), "/steps/0: \"select\" is missing");
@@ -121,7 +121,7 @@ TEST_F(JournalFile, refuses_steps_without_one_meaning) {
             "/steps/0/select/0: expected \"/nodes/<name>\"");
   EXPECT_EQ(refusal(R"([{"select": ["/nodes/A", "/nodes/A"], "drag": [[]]}])"), "/steps/0/select/1: selected twice");
   EXPECT_EQ(refusal(R"([{"name": 3, "edit": []}])"), "/steps/0/name: must be a string");
-  EXPECT_EQ(refusal(R"([{"wedge": [], "edit": []}])"), "/steps/0: unknown key \"wedge\"");
+  EXPECT_EQ(refusal(R"([{"wdge": [], "edit": []}])"), "/steps/0: unknown key \"wdge\"; did you mean \"wedge\"?");
 }
 
 TEST_F(JournalFile, refuses_operations_that_are_not_rfc_6902) {

@@ -95,7 +95,7 @@ Bytes deflate_blocks(std::vector<unsigned char>& rows) {
   constexpr std::size_t kFlushBytes = 16;
   Bytes packed(compressBound(static_cast<uLong>(rows.size())) + kFlushBytes);
   z_stream stream{};
-  const int started = deflateInit2(&stream, kFastest, Z_DEFLATED, kRawDeflate, kMemoryLevel, Z_DEFAULT_STRATEGY);
+  const int started = deflateInit2(&stream, kFastest, Z_DEFLATED, kRawDeflate, kMemoryLevel, Z_RLE);
   if (started == Z_MEM_ERROR) throw std::bad_alloc();
   require(started == Z_OK, "zlib starts with these settings");
   stream.next_in = rows.data();

@@ -1,8 +1,11 @@
 #include "scene/image_library.h"
 
 #include <dlfcn.h>
+#include <sys/mman.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <new>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -12,12 +15,24 @@ namespace {
 
 constexpr const char* kModule = "librelook_images.so";
 
+/// Libraries behind the module end the program when memory runs out while they are loaded: ask first.
+void require_address_space() {
+  constexpr std::size_t kModuleBytes = std::size_t{384} << 20;  // OpenImageIO and the 240 libraries behind it
+  void* room = mmap(nullptr, kModuleBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  munmap(room, kModuleBytes);
+}
+
 OpenImageReader* load() {
+  require_address_space();
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
   std::string reason;
   for (const std::filesystem::path& path : {folder / kModule, folder.parent_path() / "lib" / "relook" / kModule}) {
     if (!std::filesystem::exists(path, ignored)) continue;
+    // Images are decoded side by side already; where memory is short, threads of its own would end the program.
+    setenv("OPENIMAGEIO_THREADS", "1", 0);
+    setenv("OPENBLAS_NUM_THREADS", "1", 0);
     void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);  // stays loaded
     set_float_mode();  // what libraries do when they are loaded is theirs
     void* function = module != nullptr ? dlsym(module, "relook_open_image") : nullptr;
