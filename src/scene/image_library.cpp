@@ -17,7 +17,7 @@ constexpr const char* kModule = "librelook_images.so";
 
 /// Libraries behind the module end the program when memory runs out while they are loaded: ask first.
 void require_address_space() {
-  constexpr std::size_t kModuleBytes = std::size_t{384} << 20;  // OpenImageIO and the 240 libraries behind it
+  constexpr std::size_t kModuleBytes = std::size_t{512} << 20;  // address space of OpenImageIO and 240 libraries behind it
   void* room = mmap(nullptr, kModuleBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();
   munmap(room, kModuleBytes);
