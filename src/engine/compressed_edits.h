@@ -39,6 +39,7 @@ class CompressedEdits {
   /// `most_samples`: whose trees may be kept over all sets of parameters, m_c in the paper (4.1).
   CompressedEdits(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
 
+  [[nodiscard]] bool keeps_any() const { return most_samples_ > 0; }
   /// What is kept for the parameters, perhaps nothing yet. Valid until the next call.
   [[nodiscard]] CompressedImage& of(const ParameterSet& parameters);
 

@@ -226,10 +226,11 @@ struct Replayer::Impl {
   void update(StepChange& change, StepResult& result, StopWatch& watch,
               const std::vector<ShownSamples>& also_shown = {}) {
     std::vector<TileUpdate> updates;
-    if (!change.touches_rays() && is_compressible(change.colors) && also_shown.empty()) {
+    if (!change.touches_rays() && compressed.keeps_any() && is_compressible(change.colors) && also_shown.empty()) {
       if (!change.colors.empty()) recolor(change, result, watch);
       return;
     }
+    if (!change.touches_rays() && change.colors.empty() && also_shown.empty()) return;
     updates = run(change, {}, true, result, watch).updates;
     keep_trees(updates, change);
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);

@@ -9,6 +9,7 @@
 #include "growth.h"
 #include "render_measures.h"
 #include "table2.h"
+#include "table3_colors.h"
 #include "table3_looks.h"
 #include "table3_moves.h"
 
@@ -36,6 +37,7 @@ void run(const BenchOptions& options) {
   const Journal journal = read_journal(options.journal);
   print_steps(replayer, journal, times.full_seconds);
   print_moves(options, image, journal, times.full_seconds);
+  print_colors(options, image, journal, times.full_seconds);
   print_looks(options, image, journal, times.full_seconds);
 }
 
