@@ -50,7 +50,8 @@ void add_classification(Json& entry, const Classification& classification) {
 void print_step(const Json& entry, const std::string& label, Console& console) {
   std::string line = label + " \"" + printable(entry["name"].get<std::string>()) + "\"";
   if (!entry.contains("class")) {
-    const std::size_t dragged = entry["drag_frames"].get<std::size_t>(), wedge = entry["wedge_frames"].get<std::size_t>();
+    const std::size_t dragged = entry["drag_frames"].get<std::size_t>(),
+                      wedge = entry["wedge_frames"].get<std::size_t>();
     line += dragged > 0 ? ": a drag of " + std::to_string(dragged) + " frames"
             : wedge > 0 ? ": a wedge of " + std::to_string(wedge) + " values"
                         : ": " + std::to_string(entry["operations"].get<std::size_t>()) + " operations";

@@ -210,11 +210,11 @@ void JournalRun::verify(StepReport& entry) {
 
 void JournalRun::print(const StepReport& entry) {
   const Counters& counters = entry.counters;
-  std::string line = step_label(entry.step, entry.frame_in_step()) + " " + std::string(change_class_name(entry.change)) +
-                     " \"" + printable(entry.name) + "\": " + std::to_string(counters.pixels_changed) +
-                     " pixels changed, " + std::to_string(counters.ray_updates) + " ray updates, " +
-                     std::to_string(counters.shadow_updates) + " shadow updates, " +
-                     std::to_string(entry.seconds.total) + " s";
+  std::string line = step_label(entry.step, entry.frame_in_step()) + " " +
+                     std::string(change_class_name(entry.change)) + " \"" + printable(entry.name) +
+                     "\": " + std::to_string(counters.pixels_changed) + " pixels changed, " +
+                     std::to_string(counters.ray_updates) + " ray updates, " + std::to_string(counters.shadow_updates) +
+                     " shadow updates, " + std::to_string(entry.seconds.total) + " s";
   if (entry.verify)
     line += ", verified: " + std::to_string(entry.verify->pixels_different) + " of " +
             std::to_string(entry.verify->pixels_compared) + " pixels differ";

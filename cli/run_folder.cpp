@@ -41,8 +41,7 @@ RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint3
   make_folders(path_ / "previews");
 }
 
-void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels,
-                           FrameMeta meta) {
+void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels, FrameMeta meta) {
   const auto start = std::chrono::steady_clock::now();
   const bool is_first = preview_.empty();
   if (is_first) {
@@ -60,12 +59,11 @@ void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPi
   step.preview = preview_name(step.step, step.frame_in_step());
   step.frame_hash = hash128(bytes);
   finish_writing();
-  writing_ = std::async(std::launch::async,
-                        [frame_path = path_ / step.frame, preview_path = path_ / step.preview, bytes = std::move(bytes),
-                         preview = preview_] {
-                          write_file(frame_path, bytes);
-                          write_file(preview_path, preview);
-                        });
+  writing_ = std::async(std::launch::async, [frame_path = path_ / step.frame, preview_path = path_ / step.preview,
+                                             bytes = std::move(bytes), preview = preview_] {
+    write_file(frame_path, bytes);
+    write_file(preview_path, preview);
+  });
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 

@@ -273,7 +273,8 @@ void expect_only_touched_segments_traced(const std::string& node, const char* ed
   EXPECT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments);
   EXPECT_LE(step.changed_pixels.size(), step.counters.samples_affected);
   EXPECT_LE(step.counters.samples_affected, step.counters.samples_total);
-  for (const std::uint32_t pixel : step.changed_pixels.indices(replayer.image().frame.width)) EXPECT_TRUE(touched[pixel]) << "at " << pixel;
+  for (const std::uint32_t pixel : step.changed_pixels.indices(replayer.image().frame.width))
+    EXPECT_TRUE(touched[pixel]) << "at " << pixel;
 }
 
 TEST(Counters, MovedOpaqueObjectTracesOnlyTouchedSegments) {

@@ -1,5 +1,5 @@
-// Colour trees that are kept for some sets of parameters while others, and everything else, change in between: the frame
-// stays that of a full render, however many trees may be kept.
+// Colour trees that are kept for some sets of parameters while others, and everything else, change in between: the
+// frame stays that of a full render, however many trees may be kept.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -48,7 +48,8 @@ void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
   if (stride == 4) {  // most columns: in one go, which the compiler vectorises
     const auto* bytes = reinterpret_cast<const unsigned char*>(next);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t value = static_cast<std::uint32_t>(bytes[i]) | static_cast<std::uint32_t>(bytes[count + i]) << 8 |
+      const std::uint32_t value = static_cast<std::uint32_t>(bytes[i]) |
+                                  static_cast<std::uint32_t>(bytes[count + i]) << 8 |
                                   static_cast<std::uint32_t>(bytes[2 * count + i]) << 16 |
                                   static_cast<std::uint32_t>(bytes[3 * count + i]) << 24;
       std::memcpy(out + i * sizeof value, &value, sizeof value);

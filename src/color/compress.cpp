@@ -107,13 +107,14 @@ class Compressor {
     }
     for (std::uint32_t generation = generations; generation > 1; --generation)
       evaluate_batches(false, batches_of(block_.nodes.size(), [&](std::size_t n) {
-                         return is_known[n] && block_.nodes[n].ray.generation == generation ? node_program_[n] : kNoNode;
+                         return is_known[n] && block_.nodes[n].ray.generation == generation ? node_program_[n]
+                                                                                            : kNoNode;
                        }));
   }
   /// Indices by program; `program_of`: kNoNode leaves an index out.
   template <class ProgramOf>
   [[nodiscard]] std::map<std::uint32_t, std::vector<std::uint32_t>> batches_of(std::size_t count,
-                                                                              const ProgramOf& program_of) const {
+                                                                               const ProgramOf& program_of) const {
     std::map<std::uint32_t, std::vector<std::uint32_t>> batches;
     std::vector<std::uint32_t>* last = nullptr;
     std::uint32_t last_program = kNoNode;
@@ -135,9 +136,8 @@ class Compressor {
   }
 
   void compress_filters() {
-    const auto batches = batches_of(block_.filters.size(), [&](std::size_t f) {
-      return filter_changes_[f] ? filter_program_[f] : kNoNode;
-    });
+    const auto batches = batches_of(block_.filters.size(),
+                                    [&](std::size_t f) { return filter_changes_[f] ? filter_program_[f] : kNoNode; });
     for (const auto& [number, indices] : batches) {
       CompressedBatch batch = new_batch(number, {});
       batch.are_filters = true;
@@ -213,7 +213,8 @@ class Compressor {
     return batch;
   }
   void keep(CompressedBatch batch, bool are_filters, const std::vector<std::uint32_t>& indices) {
-    store_columns(batch, c_.scene.scene(), {c_.scene, block_, c_.memory.colors, are_filters, indices}, c_.memory.scratch);
+    store_columns(batch, c_.scene.scene(), {c_.scene, block_, c_.memory.colors, are_filters, indices},
+                  c_.memory.scratch);
     result_.baked.add(batch.material, batch.program->baked);
     result_.batches.push_back(std::move(batch));
   }

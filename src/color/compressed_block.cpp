@@ -11,8 +11,7 @@ class CompressedLanes {
  public:
   CompressedLanes(const CompressedBatch& batch, const BlockColors& colors) : batch_(batch), colors_(colors) {}
 
-  void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&,
-            Scratch& scratch) const {
+  void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&, Scratch& scratch) const {
     if (step.op == Op::column) {
       const CompressedBatch::Stored& stored = batch_.columns[step.payload];
       if (stored.first == CompressedBatch::kShared)

@@ -42,8 +42,8 @@ struct CompressedBatch {
   const SplitProgram* program = nullptr;
   MaterialId material;
   bool are_filters = false;
-  std::vector<std::uint32_t> out;                                // [lanes] slots for the results
-  std::array<std::vector<std::uint32_t>, kBranches> child;       // [lanes] slots of changing children
+  std::vector<std::uint32_t> out;                                       // [lanes] slots for the results
+  std::array<std::vector<std::uint32_t>, kBranches> child;              // [lanes] slots of changing children
   std::vector<std::pair<std::uint32_t, std::vector<LightLink>>> tints;  // by place of a changing light: [lanes] filters
   std::vector<Stored> columns;
   std::vector<Vector> values;  // one column after the other, rounded up to whole vectors
@@ -67,10 +67,10 @@ class Baked {
 };
 
 struct CompressedBlock {
-  std::vector<std::uint32_t> roots;        // which trees of the block depend on the parameters, increasing
-  std::uint32_t nodes = 0, filters = 0;    // slots; those of `roots` come first
+  std::vector<std::uint32_t> roots;      // which trees of the block depend on the parameters, increasing
+  std::uint32_t nodes = 0, filters = 0;  // slots; those of `roots` come first
   std::vector<std::pair<std::uint32_t, Rgba>> known_filters;  // slots of filters that do not depend on the parameters
-  std::vector<CompressedBatch> batches;    // filters first, then nodes, each after its children
+  std::vector<CompressedBatch> batches;                       // filters first, then nodes, each after its children
   Baked baked;
 
   [[nodiscard]] std::size_t bytes() const;

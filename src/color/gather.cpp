@@ -18,8 +18,7 @@ void for_each_lane(const Gathering& from, const Read& read) {
 /// Fills a column from nodes, which alone have this input.
 template <class Read>
 void from_nodes(const Gathering& from, float* out, const Read& read) {
-  for (std::size_t lane = 0; lane < from.indices.size(); ++lane)
-    out[lane] = read(from.block.nodes[from.indices[lane]]);
+  for (std::size_t lane = 0; lane < from.indices.size(); ++lane) out[lane] = read(from.block.nodes[from.indices[lane]]);
 }
 
 }  // namespace
@@ -49,11 +48,13 @@ void gather(std::uint32_t payload, const Gathering& from, const BlockColors& col
     case Input::child:
       return from_nodes(from, out, [&](const RayNode& node) { return colors.nodes[node.child[which]][axis]; });
     case Input::child_length:
-      return from_nodes(from, out, [&](const RayNode& node) { return from.block.nodes[node.child[static_cast<std::size_t>(axis)]].length; });
+      return from_nodes(from, out, [&](const RayNode& node) {
+        return from.block.nodes[node.child[static_cast<std::size_t>(axis)]].length;
+      });
     case Input::tint:
-      return from_nodes(from, out, [&](const RayNode& node) { 
-      return tint(from.block.lights[node.first_light + which], axis, colors);
-    });
+      return from_nodes(from, out, [&](const RayNode& node) {
+        return tint(from.block.lights[node.first_light + which], axis, colors);
+      });
   }
 }
 

@@ -15,7 +15,8 @@ bool ParameterSet::has(LightId light) const { return std::ranges::find(lights, l
 bool ParameterSet::reaches(MaterialId material, const Dependencies& read) const {
   if ((ambient && read.ambient) || (environment && read.environment)) return true;
   if ((fields_of(material) & read.material) != 0) return true;
-  return std::ranges::any_of(lights, [&](LightId light) { return std::ranges::find(read.lights, light) != read.lights.end(); });
+  return std::ranges::any_of(lights,
+                             [&](LightId light) { return std::ranges::find(read.lights, light) != read.lights.end(); });
 }
 
 }  // namespace relook

@@ -18,7 +18,9 @@ struct ParameterSet {
   [[nodiscard]] FieldMask fields_of(MaterialId material) const;
   [[nodiscard]] bool has(LightId light) const;
   /// Does a program read any of them?
-  [[nodiscard]] bool reaches(const BoundProgram& bound) const { return reaches(bound.material, bound.program->dependencies); }
+  [[nodiscard]] bool reaches(const BoundProgram& bound) const {
+    return reaches(bound.material, bound.program->dependencies);
+  }
   [[nodiscard]] bool reaches(MaterialId material, const Dependencies& read) const;
 };
 

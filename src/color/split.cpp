@@ -6,7 +6,9 @@ namespace relook {
 namespace {
 
 /// Cheaper to compute again from columns at hand than to load.
-bool is_cheap(Op op) { return op == Op::add || op == Op::subtract || op == Op::multiply || op == Op::min || op == Op::max; }
+bool is_cheap(Op op) {
+  return op == Op::add || op == Op::subtract || op == Op::multiply || op == Op::min || op == Op::max;
+}
 
 class Splitter {
  public:
@@ -121,8 +123,7 @@ class Splitter {
   /// The program from the columns on.
   Kernel residual(const std::vector<Value>& columns) const {
     Code code = code_;
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      code[columns[k]] = {Op::column, static_cast<std::uint32_t>(k), {}};
+    for (std::size_t k = 0; k < columns.size(); ++k) code[columns[k]] = {Op::column, static_cast<std::uint32_t>(k), {}};
     return make_kernel(code, {program_.result.begin(), program_.result.end()});
   }
 

@@ -128,8 +128,7 @@ JournalStep read_step(const JsonView& view, std::size_t number) {
     step.edit = read_edit(view.at("edit"));
     return step;
   }
-  if (!has_drag && !view.has("select"))
-    view.fail("a step needs \"edit\", \"wedge\", or \"select\" and \"drag\"");
+  if (!has_drag && !view.has("select")) view.fail("a step needs \"edit\", \"wedge\", or \"select\" and \"drag\"");
   step.select = read_selection(view.at("select"));
   const JsonView drag = view.at("drag");
   drag.require_array();

@@ -13,10 +13,10 @@ enum class PatchOp : std::uint8_t { add, remove, replace, move, copy, test };
 
 struct PatchOperation {
   PatchOp op = PatchOp::replace;
-  std::string path;   // as written
-  std::string from;   // move, copy
-  Json value;         // add, replace, test
-  std::string where;  // pointer into the journal: "/steps/3/edit/0"; its path is below it
+  std::string path;         // as written
+  std::string from;         // move, copy
+  Json value;               // add, replace, test
+  std::string where;        // pointer into the journal: "/steps/3/edit/0"; its path is below it
   std::string value_where;  // pointer to the value: "/steps/3/edit/0/value"
 };
 using Edit = std::vector<PatchOperation>;

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "color/parameter_set.h"
 #include "color/illumination.h"
+#include "color/parameter_set.h"
 #include "region/tunnel.h"
 #include "trace/grow.h"
 

@@ -1,5 +1,5 @@
-// Colour trees that are kept (paper 3.3, 4.1.1): for sets of parameters that steps have changed, the compressed trees of
-// the samples that depend on them. What else an edit changes makes them invalid tile by tile.
+// Colour trees that are kept (paper 3.3, 4.1.1): for sets of parameters that steps have changed, the compressed trees
+// of the samples that depend on them. What else an edit changes makes them invalid tile by tile.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -49,8 +49,8 @@ class CompressedEdits {
   void note_trees(std::size_t tile);
   void clear() { images_.clear(); }
 
-  /// After a step: drops what has the least information weight (paper 4.3: time to rebuild over size and over the number
-  /// of changes since it was used) until no more samples than allowed are left.
+  /// After a step: drops what has the least information weight (paper 4.3: time to rebuild over size and over the
+  /// number of changes since it was used) until no more samples than allowed are left.
   void trim();
 
   [[nodiscard]] std::size_t bytes() const;

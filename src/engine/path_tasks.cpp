@@ -74,8 +74,8 @@ class Finder {
   [[nodiscard]] bool reaches(std::span<const std::uint32_t> path, const ParameterSet& parameters) {
     std::vector<NodeKey> keys;
     append_keys(s_.rays, path, s_.lights, s_.shadow_bits, keys);
-    return std::ranges::any_of(keys,
-                               [&](const NodeKey& key) { return parameters.reaches(programs_.get(s_.rays.scene(), key)); });
+    return std::ranges::any_of(
+        keys, [&](const NodeKey& key) { return parameters.reaches(programs_.get(s_.rays.scene(), key)); });
   }
 
   const PathSearch& s_;

@@ -29,7 +29,8 @@ std::array<float, 255> srgb_boundaries() {
 class SrgbCodes {
  public:
   SrgbCodes() : boundary_(srgb_boundaries()) {
-    for (std::uint32_t k = 0; k < first_.size(); ++k) first_[k] = slow_code(std::bit_cast<float>((k + kLowest) << kShift));
+    for (std::uint32_t k = 0; k < first_.size(); ++k)
+      first_[k] = slow_code(std::bit_cast<float>((k + kLowest) << kShift));
   }
   [[nodiscard]] unsigned char of(float linear) const {
     if (!(linear > 0x1p-13F)) return 0;  // NaN, too
@@ -40,7 +41,7 @@ class SrgbCodes {
   }
 
  private:
-  static constexpr unsigned kShift = 16;                                                    // 128 steps an octave
+  static constexpr unsigned kShift = 16;  // 128 steps an octave
   static constexpr std::uint32_t kLowest = (127U - 13U) << (23 - kShift), kEnd = 127U << (23 - kShift);
   [[nodiscard]] unsigned char slow_code(float linear) const {
     return static_cast<unsigned char>(std::upper_bound(boundary_.begin(), boundary_.end(), linear) - boundary_.begin());

@@ -257,7 +257,7 @@ struct Replayer::Impl {
     watch.lap(result.seconds.select);
     const GrowScene scene = grow(nullptr);
     const std::vector<bool> near_tiles;
-    const UpdatePass pass{image(),          stored.lights(), scene,   change,     tasks,        stored.classes(),
+    const UpdatePass pass{image(),          stored.lights(), scene,      change,       tasks,   stored.classes(),
                           stored.regions(), nullptr,         near_tiles, known_leaves, programs};
     parallel_for(works.size(), [&](std::size_t tile) {
       if (!kept.tiles[tile].is_valid) works[tile] = find_tile_work(pass, tile);

@@ -18,7 +18,7 @@ namespace relook {
 struct StepResult {
   Classification classification;
   Counters counters;
-  Seconds seconds;                            // classify .. evaluate; write and total are the caller's
+  Seconds seconds;  // classify .. evaluate; write and total are the caller's
   ChangedPixels changed_pixels;
   std::vector<Leaves> dependent, touched;  // by tile: leaves whose paths the change reaches, whose tunnels it may touch
 };

@@ -34,7 +34,7 @@ struct StepReport {
   std::optional<std::uint32_t> drag_frame;   // 1.. for the intermediate frames of a drag
   std::optional<std::uint32_t> wedge_frame;  // 1.. for the values of a wedge
   [[nodiscard]] std::optional<std::uint32_t> frame_in_step() const { return drag_frame ? drag_frame : wedge_frame; }
-  std::string frame, frame_hash, preview;   // files relative to the run directory; XXH3-128 of the frame's bytes
+  std::string frame, frame_hash, preview;  // files relative to the run directory; XXH3-128 of the frame's bytes
   Counters counters;
   Seconds seconds;
   Resident resident;

@@ -17,7 +17,8 @@ constexpr const char* kModule = "librelook_images.so";
 
 /// Libraries behind the module end the program when memory runs out while they are loaded: ask first.
 void require_address_space() {
-  constexpr std::size_t kModuleBytes = std::size_t{512} << 20;  // address space of OpenImageIO and 240 libraries behind it
+  constexpr std::size_t kModuleBytes = std::size_t{512}
+                                       << 20;  // address space of OpenImageIO and 240 libraries behind it
   void* room = mmap(nullptr, kModuleBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) throw std::bad_alloc();
   munmap(room, kModuleBytes);
@@ -34,7 +35,7 @@ OpenImageReader* load() {
     setenv("OPENIMAGEIO_THREADS", "1", 0);
     setenv("OPENBLAS_NUM_THREADS", "1", 0);
     void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);  // stays loaded
-    set_float_mode();  // what libraries do when they are loaded is theirs
+    set_float_mode();                                            // what libraries do when they are loaded is theirs
     void* function = module != nullptr ? dlsym(module, "relook_open_image") : nullptr;
     if (function != nullptr) return reinterpret_cast<OpenImageReader*>(function);
     if (const char* message = dlerror(); message != nullptr) reason = message;

@@ -13,7 +13,7 @@ enum class TexelType : std::uint8_t { byte, word, real };  // unsigned 8 and 16 
 
 struct ImageSpec {
   int width = 0, height = 0, depth = 0, channels = 0;
-  int alpha_channel = -1;             // none: -1
+  int alpha_channel = -1;            // none: -1
   TexelType type = TexelType::real;  // as stored; anything else than byte and word reads as real
 };
 
@@ -30,10 +30,11 @@ class ImageReader {
 /// What the module exports, as relook_open_image: opens an image of the named format ("png", "jpeg", "hdr", "openexr").
 /// `bytes` outlives it. Null: `error` says why.
 using OpenImageReader = std::unique_ptr<ImageReader>(const char* format, std::span<const std::byte> bytes,
-                                                       std::string& error);
+                                                     std::string& error);
 
-/// Loads the module on first use: from the program's folder or, installed, ../lib/relook. Throws Error if it is missing.
+/// Loads the module on first use: from the program's folder or, installed, ../lib/relook. Throws Error if it is
+/// missing.
 [[nodiscard]] std::unique_ptr<ImageReader> open_image(const char* format, std::span<const std::byte> bytes,
-                                                       std::string& error);
+                                                      std::string& error);
 
 }  // namespace relook

@@ -59,7 +59,9 @@ struct RayChange {
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
   bool lights_changed = false;                     // any light added, deleted, moved or reordered
 
-  [[nodiscard]] std::uint8_t flags(ObjectId id) const { return objects.empty() ? std::uint8_t{0} : objects[id.index()]; }
+  [[nodiscard]] std::uint8_t flags(ObjectId id) const {
+    return objects.empty() ? std::uint8_t{0} : objects[id.index()];
+  }
   /// Makes room for the flags of that many objects.
   void reserve(std::size_t count) {
     objects.resize(count, 0);

@@ -65,8 +65,8 @@ ColorTimes time_step(Replayer& uncompressed, Replayer& compressed, const Edit& e
 void print_row(const PaperRow& paper, const ColorTimes& times, double full_seconds, double bandwidth) {
   constexpr double kPixelBytes = 4 * sizeof(Rgba);  // colour and pixel of a sample, each read and written
   const double moved = times.column_bytes + times.samples * kPixelBytes;
-  std::printf("%-26s %8.0f %8.2f %7.0f %8.2f %7.0f %8.2f %7.0f %6.0f / %.0f / %.0f / %-6.0f %6.1f %6.0f%%\n", paper.step,
-              times.samples, times.from_trees * 1e3, full_seconds / times.from_trees, times.first * 1e3,
+  std::printf("%-26s %8.0f %8.2f %7.0f %8.2f %7.0f %8.2f %7.0f %6.0f / %.0f / %.0f / %-6.0f %6.1f %6.0f%%\n",
+              paper.step, times.samples, times.from_trees * 1e3, full_seconds / times.from_trees, times.first * 1e3,
               full_seconds / times.first, times.later * 1e3, full_seconds / times.later, kPaperFull / paper.ray_paths,
               kPaperFull / paper.all_ray_trees, kPaperFull / paper.color_trees, kPaperFull / paper.compressed,
               times.column_bytes / times.samples, 100 * moved / times.later / bandwidth);
@@ -80,13 +80,15 @@ void print_colors(const BenchOptions& options, const Image& image, const Journal
   Replayer uncompressed(load_scene(options), image, none), compressed(load_scene(options), image);
   const double bandwidth = copy_bandwidth();
   std::printf(
-      "\nTable 3, colour rows: milliseconds and full render / edit, from ray trees (no colour trees kept), for the first "
-      "edit of a parameter\n(finding and compressing its samples, once), for later ones (fastest of %d). Bytes: columns a "
+      "\nTable 3, colour rows: milliseconds and full render / edit, from ray trees (no colour trees kept), for the "
+      "first "
+      "edit of a parameter\n(finding and compressing its samples, once), for later ones (fastest of %d). Bytes: "
+      "columns a "
       "sample. Moved: columns and pixels of later edits, share of a plain copy (%.0f GB/s read and written; to reach: "
       "50 %%)\n",
       kRuns, bandwidth * 1e-9);
-  std::printf("%-26s %8s %8s %7s %8s %7s %8s %7s %28s %6s %7s\n", "step", "samples", "trees", "x", "first", "x", "later",
-              "x", "paper: paths/trees/color/compr.", "bytes", "moved");
+  std::printf("%-26s %8s %8s %7s %8s %7s %8s %7s %28s %6s %7s\n", "step", "samples", "trees", "x", "first", "x",
+              "later", "x", "paper: paths/trees/color/compr.", "bytes", "moved");
   for (const JournalStep& step : journal.steps)
     for (const PaperRow& paper : kPaperRows)
       if (step.name == paper.step)

@@ -64,9 +64,8 @@ MoveTimes time_move(Replayer& replayer, const JournalStep& step, const Edit& inv
     if (round > 0) static_cast<void>(timed(replayer, StepKind::step, inverse, journal));
     keep_faster(times.merged, timed(replayer, StepKind::step, edit, journal));
   }
-  times.merged_work =
-      time_pixel_work(replayer.state().scene(), replayer.image().view,
-                      times.merged.result.changed_pixels.indices(replayer.image().frame.width));
+  times.merged_work = time_pixel_work(replayer.state().scene(), replayer.image().view,
+                                      times.merged.result.changed_pixels.indices(replayer.image().frame.width));
   return times;
 }
 

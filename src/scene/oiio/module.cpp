@@ -50,7 +50,7 @@ class OiioImage final : public relook::ImageReader {
 }  // namespace
 
 extern "C" std::unique_ptr<relook::ImageReader> relook_open_image(const char* format, std::span<const std::byte> bytes,
-                                                                   std::string& error) {
+                                                                  std::string& error) {
   auto image = std::make_unique<OiioImage>(bytes);
   if (!image->open(format, error)) return nullptr;
   return image;
