@@ -5,6 +5,9 @@
 namespace relook {
 namespace {
 
+/// Sets that reach few samples, or none, are cheap to keep, but not for ever.
+constexpr std::size_t kMostSets = 64;
+
 /// Could another structure of the material make other samples depend on the parameters?
 bool may_reach_others(const ParameterSet& parameters, MaterialId restructured) {
   return parameters.fields_of(restructured) != 0 || !parameters.lights.empty() || parameters.ambient ||
@@ -74,6 +77,8 @@ void CompressedEdits::trim() {
     }
   }
   std::erase_if(images_, [](const auto& image) { return image->invalid == image->tiles.size(); });
+  while (images_.size() > kMostSets)
+    images_.erase(std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_step; }));
 }
 
 std::size_t CompressedEdits::bytes() const {
