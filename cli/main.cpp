@@ -3,6 +3,7 @@
 #include <new>
 
 #include "base/parallel.h"
+#include "scene/image_library.h"
 #include "verbs.h"
 
 namespace relook {
@@ -58,6 +59,7 @@ int report(ExitCode code, const char* what) {
 
 int main(int argc, char** argv) {
   using relook::ExitCode;
+  relook::limit_image_library_threads();
   relook::set_float_mode();
   try {
     return static_cast<int>(relook::run(argc, argv));

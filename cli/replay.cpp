@@ -169,6 +169,7 @@ void JournalRun::wedge_step(const JournalStep& step) {
     fill(entry, result);
     last.change = combined(last.change, entry.change);
     last.counters.samples_total = entry.counters.samples_total;
+    last.counters.ray_tests_culled = replayer_.segments();
     finish(std::move(entry), result, start);
   }
   last.step = number;

@@ -126,5 +126,16 @@ TEST(RecolorCost, TheSecondEditOfAParameterLooksForNothing) {
   EXPECT_GT(replayer.resident().color_trees, first.counters.samples_affected * sizeof(Rgba));
 }
 
+TEST(RecolorCost, TheSecondEditOfALightLooksForNothing) {
+  SceneState state = test_scene(TestScene::spheres, 150, 110);
+  Image image = preprocessed(state.scene(), {1, 5, 0});
+  Replayer replayer(std::move(state), std::move(image));
+  const StepResult first = replayer.step(replace_edit("/lights/Lamp/intensity", 21), "recolor", ".");
+  const StepResult second = replayer.step(replace_edit("/lights/Lamp/intensity", 22), "recolor", ".");
+  EXPECT_GT(first.counters.by_groups.visited, 0U);
+  EXPECT_EQ(second.counters.by_groups.visited, 0U);
+  EXPECT_EQ(first.counters.samples_affected, second.counters.samples_affected);
+}
+
 }  // namespace
 }  // namespace relook

@@ -155,7 +155,8 @@ class Splitter {
       case Op::tangent_frame:
         read.material |= kMappingMask;
         break;
-      case Op::light_field:
+      case Op::light_field:  // placement never changes while columns are kept
+        if (!is_color(static_cast<LightField>(i.payload & 0xFFU))) break;
         if (const LightId light(i.payload >> 8); std::ranges::find(read.lights, light) == read.lights.end())
           read.lights.push_back(light);
         break;

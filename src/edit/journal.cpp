@@ -57,7 +57,7 @@ std::vector<std::string> read_selection(const JsonView& view) {
 
 constexpr std::size_t kMostWedgeValues = 10'000;
 
-/// `values` evenly spaced from `range.from` to `range.to`, numbers or arrays of numbers.
+/// `range.count` values evenly spaced from `range.from` to `range.to`, numbers or arrays of numbers.
 std::vector<Json> spaced_values(const JsonView& range) {
   constexpr std::array<std::string_view, 3> kKeys{"from", "to", "count"};
   constexpr double kLargest = 1e30;

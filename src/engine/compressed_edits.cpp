@@ -76,7 +76,11 @@ void CompressedEdits::trim() {
       piece.image->drop(*piece.tile);
     }
   }
-  std::erase_if(images_, [](const auto& image) { return image->invalid == image->tiles.size(); });
+  std::erase_if(images_, [](const auto& image) {
+    const bool is_empty =
+        std::ranges::all_of(image->tiles, [](const CompressedTile& tile) { return tile.samples.empty(); });
+    return is_empty && image->invalid > 0;
+  });
   while (images_.size() > kMostSets)
     images_.erase(std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_step; }));
 }

@@ -31,9 +31,6 @@ OpenImageReader* load() {
   std::string reason;
   for (const std::filesystem::path& path : {folder / kModule, folder.parent_path() / "lib" / "relook" / kModule}) {
     if (!std::filesystem::exists(path, ignored)) continue;
-    // Images are decoded side by side already; where memory is short, threads of its own would end the program.
-    setenv("OPENIMAGEIO_THREADS", "1", 0);
-    setenv("OPENBLAS_NUM_THREADS", "1", 0);
     void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);  // stays loaded
     set_float_mode();                                            // what libraries do when they are loaded is theirs
     void* function = module != nullptr ? dlsym(module, "relook_open_image") : nullptr;
@@ -44,6 +41,11 @@ OpenImageReader* load() {
 }
 
 }  // namespace
+
+void limit_image_library_threads() {
+  setenv("OPENIMAGEIO_THREADS", "1", 0);
+  setenv("OPENBLAS_NUM_THREADS", "1", 0);
+}
 
 std::unique_ptr<ImageReader> open_image(const char* format, std::span<const std::byte> bytes, std::string& error) {
   static OpenImageReader* const open = load();

@@ -32,6 +32,10 @@ class ImageReader {
 using OpenImageReader = std::unique_ptr<ImageReader>(const char* format, std::span<const std::byte> bytes,
                                                      std::string& error);
 
+/// Keeps the module's libraries from starting threads of their own: images are decoded side by side already, and where
+/// memory is short such threads would end the program. To be called before any thread starts.
+void limit_image_library_threads();
+
 /// Loads the module on first use: from the program's folder or, installed, ../lib/relook. Throws Error if it is
 /// missing.
 [[nodiscard]] std::unique_ptr<ImageReader> open_image(const char* format, std::span<const std::byte> bytes,
