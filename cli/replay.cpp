@@ -38,10 +38,9 @@ class JournalRun {
  private:
   void run_steps();
   void base_step();
-  void edit_step(const JournalStep& step);
-  void drag_step(const JournalStep& step);
-  void wedge_step(const JournalStep& step);
-  static void fill(StepReport& entry, const StepResult& result);
+  void journal_step(const JournalStep& step);
+  template <class Work>
+  ChangeClass frame(StepReport entry, const Work& work);
   void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
   void verify(StepReport& entry);
   Frame full_render();
@@ -91,14 +90,7 @@ std::uint64_t JournalRun::run() {
 
 void JournalRun::run_steps() {
   base_step();
-  for (const JournalStep& step : journal_.steps) {
-    if (!step.drag.empty())
-      drag_step(step);
-    else if (!step.wedge.empty())
-      wedge_step(step);
-    else
-      edit_step(step);
-  }
+  for (const JournalStep& step : journal_.steps) journal_step(step);
 }
 
 void JournalRun::base_step() {
@@ -110,72 +102,49 @@ void JournalRun::base_step() {
   finish(std::move(entry), StepResult(), std::chrono::steady_clock::now());
 }
 
-void JournalRun::fill(StepReport& entry, const StepResult& result) {
-  entry.change = result.classification.change;
-  entry.reasons = result.classification.reasons;
+/// Does a frame's work, writes it and notes it; its class. An entry that has reasons already keeps them and its class.
+template <class Work>
+ChangeClass JournalRun::frame(StepReport entry, const Work& work) {
+  const auto start = std::chrono::steady_clock::now();
+  console_.check_interrupt();
+  const StepResult result = work();
+  if (entry.reasons.empty()) {
+    entry.change = result.classification.change;
+    entry.reasons = result.classification.reasons;
+  }
   entry.counters = result.counters;
   entry.seconds = result.seconds;
+  const ChangeClass change = entry.change;
+  finish(std::move(entry), result, start);
+  return change;
 }
 
-void JournalRun::edit_step(const JournalStep& step) {
-  const auto start = std::chrono::steady_clock::now();
+void JournalRun::journal_step(const JournalStep& step) {
   StepReport entry;
   entry.step = report_.steps.back().step + 1;
   entry.name = step.name;
-  console_.check_interrupt();
-  const StepResult result = replayer_.step(step.edit, journal_.file, journal_.path.parent_path());
-  fill(entry, result);
-  finish(std::move(entry), result, start);
-}
-
-void JournalRun::drag_step(const JournalStep& step) {
-  const std::uint32_t number = report_.steps.back().step + 1;
-  ChangeClass change = ChangeClass::color;
-  for (std::uint32_t i = 0; i < step.drag.size(); ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    StepReport entry;
-    entry.step = number;
-    entry.name = step.name;
-    entry.drag_frame = i + 1;
-    console_.check_interrupt();
-    const StepResult result = replayer_.drag(step.drag[i], journal_.file, journal_.path.parent_path());
-    fill(entry, result);
-    change = combined(change, entry.change);
-    finish(std::move(entry), result, start);
+  const std::filesystem::path folder = journal_.path.parent_path();
+  const auto edit = [&](const Edit& patch) { return replayer_.step(patch, journal_.file, folder); };
+  if (step.drag.empty() && step.wedge.empty()) {
+    frame(entry, [&] { return edit(step.edit); });
+    return;
   }
-  const auto start = std::chrono::steady_clock::now();
-  const StepResult result = replayer_.release();
-  StepReport released;
-  fill(released, result);
-  released.step = number;
-  released.name = step.name;
-  released.change = change;
-  released.reasons = {"the selection is released where the last entry put it"};
-  finish(std::move(released), result, start);
-}
-
-void JournalRun::wedge_step(const JournalStep& step) {
-  const std::uint32_t number = report_.steps.back().step + 1;
-  StepReport last;
+  StepReport last = entry;
   last.change = ChangeClass::color;
-  for (std::uint32_t i = 0; i < step.wedge.size(); ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    StepReport entry;
-    entry.step = number;
-    entry.name = step.name;
-    entry.wedge_frame = i + 1;
-    console_.check_interrupt();
-    const StepResult result = replayer_.step(step.wedge[i], journal_.file, journal_.path.parent_path());
-    fill(entry, result);
-    last.change = combined(last.change, entry.change);
-    last.counters.samples_total = entry.counters.samples_total;
-    last.counters.ray_tests_culled = replayer_.segments();
-    finish(std::move(entry), result, start);
+  std::uint32_t number = 0;
+  for (const Edit& patch : frames_of(step)) {
+    (step.drag.empty() ? entry.wedge_frame : entry.drag_frame) = ++number;
+    const ChangeClass change =
+        frame(entry, [&] { return step.drag.empty() ? edit(patch) : replayer_.drag(patch, journal_.file, folder); });
+    last.change = combined(last.change, change);
   }
-  last.step = number;
-  last.name = step.name;
-  last.reasons = {"the last value of the wedge stays"};
-  finish(std::move(last), StepResult(), std::chrono::steady_clock::now());
+  if (step.drag.empty()) {
+    last.reasons = {"the last value of the wedge stays"};
+    frame(last, [&] { return edit({}); });
+  } else {
+    last.reasons = {"the selection is released where the last entry put it"};
+    frame(last, [&] { return replayer_.release(); });
+  }
 }
 
 void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {

@@ -141,6 +141,21 @@ TEST(Preview, is_a_png_of_srgb_codes) {
   EXPECT_EQ(row, (std::vector<std::uint8_t>{0, 188, 255, 255, 0, 255, 0, 255, 10, 127, 3, 255}));
 }
 
+TEST(Preview, codes_change_where_srgb_says) {
+  Frame frame{255 * 2, 1, {}};
+  std::vector<std::uint8_t> expected;
+  for (int k = 0; k < 255; ++k) {
+    const double encoded = (k + 0.5) / 255;  // halfway to the next code
+    const auto edge =
+        static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+    for (const float value : {std::nextafter(edge, 0.0F), edge}) frame.pixels.emplace_back(value, value, value, 1.0F);
+    expected.push_back(static_cast<std::uint8_t>(k));
+    expected.push_back(static_cast<std::uint8_t>(k + 1));
+  }
+  const auto pyramid = decode_pyramid(encode_png(frame), true, "preview", "");
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(pyramid->texels8[4 * i], expected[i]) << i;
+}
+
 TEST(Preview, updated_bands_give_the_bytes_of_a_fresh_encoding) {
   Frame frame = gradient_frame();
   PreviewEncoder encoder(kWidth, kHeight);

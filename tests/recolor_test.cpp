@@ -126,6 +126,24 @@ TEST(RecolorCost, TheSecondEditOfAParameterLooksForNothing) {
   EXPECT_GT(replayer.resident().color_trees, first.counters.samples_affected * sizeof(Rgba));
 }
 
+TEST(RecolorCost, NoMoreColorTreesAreKeptThanAllowed) {
+  SceneState state = test_scene(TestScene::spheres, 150, 110);
+  Image image = preprocessed(state.scene(), {1, 5, 0});
+  RegionOptions options;
+  options.color_trees = 0.3;
+  Replayer replayer(std::move(state), std::move(image), options);
+  const std::uint64_t before = replayer.resident().color_trees;
+  const char* pointer = "/lights/Lamp/intensity";  // reaches nearly all samples
+  for (int k = 0; k < 3; ++k) {
+    const StepResult step = replayer.step(replace_edit(pointer, 21 + k), "recolor", ".");
+    const auto allowed = static_cast<std::uint64_t>(0.3 * static_cast<double>(step.counters.samples_total));
+    EXPECT_GT(step.counters.samples_affected, allowed);
+    EXPECT_GE(step.counters.color_trees_evicted, step.counters.samples_affected - allowed);
+    EXPECT_LT(step.counters.color_trees_evicted, step.counters.samples_affected) << "some tile is kept";
+    EXPECT_GT(replayer.resident().color_trees, before);
+  }
+}
+
 TEST(RecolorCost, TheSecondEditOfALightLooksForNothing) {
   SceneState state = test_scene(TestScene::spheres, 150, 110);
   Image image = preprocessed(state.scene(), {1, 5, 0});

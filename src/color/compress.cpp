@@ -90,21 +90,26 @@ class Compressor {
   void evaluate_known() {
     c_.memory.colors.filters.resize(block_.filters.size());
     c_.memory.colors.nodes.resize(block_.nodes.size());
+    bool tree_changes = false;
+    std::uint32_t generations = 0;
+    std::vector<bool> is_known(block_.nodes.size()), is_known_filter(block_.filters.size());
+    for (std::size_t n = 0; n < block_.nodes.size(); ++n) {
+      const RayNode& node = block_.nodes[n];
+      if (node.parent == kNoNode) tree_changes = node_changes_[n];
+      if (!tree_changes) continue;
+      is_known[n] = !node_changes_[n];
+      if (is_known[n]) generations = std::max<std::uint32_t>(generations, node.ray.generation);
+      if (node.object.is_none() || block_.filters.empty()) continue;
+      for_each_tint(node, [&](std::uint32_t, const LightLink& link) {
+        for (std::uint32_t f = link.first; f < link.first + link.filters; ++f) is_known_filter[f] = !filter_changes_[f];
+      });
+    }
     evaluate_batches(true, batches_of(block_.filters.size(), [&](std::size_t f) {
-                       return filter_changes_[f] ? kNoNode : filter_program_[f];
+                       return is_known_filter[f] ? filter_program_[f] : kNoNode;
                      }));
     for (std::size_t f = 0; f < block_.filters.size(); ++f)
       if (!filter_changes_[f] && filter_slot_[f] != kNoNode)
         result_.known_filters.emplace_back(filter_slot_[f], c_.memory.colors.filters[f]);
-    bool tree_changes = false;
-    std::uint32_t generations = 0;
-    std::vector<bool> is_known(block_.nodes.size());
-    for (std::size_t n = 0; n < block_.nodes.size(); ++n) {
-      const RayNode& node = block_.nodes[n];
-      if (node.parent == kNoNode) tree_changes = node_changes_[n];
-      is_known[n] = tree_changes && !node_changes_[n];
-      if (is_known[n]) generations = std::max<std::uint32_t>(generations, node.ray.generation);
-    }
     for (std::uint32_t generation = generations; generation > 1; --generation)
       evaluate_batches(false, batches_of(block_.nodes.size(), [&](std::size_t n) {
                          return is_known[n] && block_.nodes[n].ray.generation == generation ? node_program_[n]

@@ -20,6 +20,7 @@ class Splitter {
 
   SplitProgram result() {
     is_column_.assign(code_.size(), false);
+    visited_.assign(code_.size(), false);
     for (Value value : program_.result) demand(value);
     lower_columns();
     std::vector<Value> columns;
@@ -77,7 +78,6 @@ class Splitter {
       is_column_[v] = true;
       return;
     }
-    if (visited_.empty()) visited_.resize(code_.size());
     if (visited_[v]) return;
     visited_[v] = true;
     for (unsigned k = 0; k < operand_count(code_[v].op); ++k) demand(code_[v].operands[k]);

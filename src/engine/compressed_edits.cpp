@@ -23,11 +23,7 @@ bool is_outdated(const CompressedTile& tile, const ColorChange& change) {
 
 }  // namespace
 
-void CompressedImage::drop(CompressedTile& tile) {
-  if (!tile.is_valid) return;
-  tile = CompressedTile();
-  ++invalid;
-}
+bool CompressedImage::is_valid() const { return std::ranges::all_of(tiles, &CompressedTile::is_valid); }
 
 CompressedImage& CompressedEdits::of(const ParameterSet& parameters) {
   auto found = std::ranges::find_if(images_, [&](const auto& image) { return image->parameters == parameters; });
@@ -47,18 +43,18 @@ void CompressedEdits::note_colors(const ColorChange& change) {
   });
   for (const auto& image : images_)
     for (CompressedTile& tile : image->tiles)
-      if (is_outdated(tile, change)) image->drop(tile);
+      if (is_outdated(tile, change)) tile = {};
 }
 
 void CompressedEdits::note_trees(std::size_t tile) {
-  for (const auto& image : images_) image->drop(image->tiles[tile]);
+  for (const auto& image : images_) image->tiles[tile] = {};
 }
 
-void CompressedEdits::trim() {
-  std::uint64_t kept = samples();
+std::uint64_t CompressedEdits::trim() {
+  const std::uint64_t before = samples();
+  std::uint64_t kept = before;
   if (kept > most_samples_) {
     struct Piece {
-      CompressedImage* image;
       CompressedTile* tile;
       double weight;
     };
@@ -67,22 +63,23 @@ void CompressedEdits::trim() {
       for (CompressedTile& tile : image->tiles) {
         if (tile.samples.empty()) continue;
         const auto age = static_cast<double>(1 + step_ - image->last_step);
-        pieces.push_back({image.get(), &tile, tile.build_seconds / (static_cast<double>(tile.bytes) * age)});
+        pieces.push_back({&tile, tile.build_seconds / (static_cast<double>(tile.bytes) * age)});
       }
     std::ranges::sort(pieces, {}, &Piece::weight);
     for (const Piece& piece : pieces) {
       if (kept <= most_samples_) break;
       kept -= piece.tile->samples.size();
-      piece.image->drop(*piece.tile);
+      *piece.tile = {};
     }
   }
   std::erase_if(images_, [](const auto& image) {
     const bool is_empty =
         std::ranges::all_of(image->tiles, [](const CompressedTile& tile) { return tile.samples.empty(); });
-    return is_empty && image->invalid > 0;
+    return is_empty && !image->is_valid();
   });
   while (images_.size() > kMostSets)
     images_.erase(std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_step; }));
+  return before - samples();
 }
 
 std::size_t CompressedEdits::bytes() const {

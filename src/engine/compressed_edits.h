@@ -24,13 +24,12 @@ struct CompressedTile {
 /// Those of one set of parameters.
 struct CompressedImage {
   CompressedImage(ParameterSet of, std::size_t tile_count) : parameters(std::move(of)), tiles(tile_count) {}
-  [[nodiscard]] bool is_valid() const { return invalid == 0; }
-  void drop(CompressedTile& tile);
+  /// Is no tile to be built?
+  [[nodiscard]] bool is_valid() const;
 
   ParameterSet parameters;
   SplitTable splits;
   std::vector<CompressedTile> tiles;
-  std::size_t invalid = tiles.size();  // tiles that are to be built
   std::uint64_t last_step = 0;
 };
 
@@ -39,7 +38,7 @@ class CompressedEdits {
   /// `most_samples`: whose trees may be kept over all sets of parameters, m_c in the paper (4.1).
   CompressedEdits(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
 
-  [[nodiscard]] bool keeps_any() const { return most_samples_ > 0; }
+  [[nodiscard]] std::uint64_t most_samples() const { return most_samples_; }
   /// What is kept for the parameters, perhaps nothing yet. Valid until the next call.
   [[nodiscard]] CompressedImage& of(const ParameterSet& parameters);
 
@@ -50,8 +49,9 @@ class CompressedEdits {
   void clear() { images_.clear(); }
 
   /// After a step: drops what has the least information weight (paper 4.3: time to rebuild over size and over the
-  /// number of changes since it was used) until no more samples than allowed are left.
-  void trim();
+  /// number of changes since it was used) until no more samples than allowed are left. Returns the number of colour
+  /// trees dropped.
+  std::uint64_t trim();
 
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] std::uint64_t samples() const;

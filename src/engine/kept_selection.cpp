@@ -17,8 +17,9 @@ const std::vector<Leaves>* KeptSelection::leaves(const StepChange& change) const
   return is_same(change) ? &found_->leaves : nullptr;
 }
 
-const PathTasks* KeptSelection::tasks(const StepChange& change) const {
-  return is_same(change) && !found_->paths_changed ? &found_->tasks : nullptr;
+PathTasks KeptSelection::find_tasks(const StepChange& change, const PathSearch& search, ProgramTable& programs) const {
+  if (is_same(change) && !found_->paths_changed) return found_->tasks;
+  return find_path_tasks(search, change, programs);
 }
 
 void KeptSelection::keep(const StepChange& change, PathTasks tasks, std::vector<Leaves> leaves) {

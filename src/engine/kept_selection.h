@@ -14,8 +14,8 @@ class KeptSelection {
   /// The leaves that depend on the things that `change` edits, by tile, if the last step edited the same; else null. An
   /// optical step may have made them more than depend on them now, never fewer: only trees in them have changed.
   [[nodiscard]] const std::vector<Leaves>* leaves(const StepChange& change) const;
-  /// The last step's tasks, under the same condition and if no path has changed since.
-  [[nodiscard]] const PathTasks* tasks(const StepChange& change) const;
+  /// What to do with each path: the last step's, under the same condition and if no path has changed since; else found.
+  [[nodiscard]] PathTasks find_tasks(const StepChange& change, const PathSearch& search, ProgramTable& programs) const;
 
   /// Notes what a step has found, unless it moves anything.
   void keep(const StepChange& change, PathTasks tasks, std::vector<Leaves> leaves);

@@ -1,8 +1,10 @@
 #include "engine/recolor.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 
+#include "base/parallel.h"
 #include "engine/sampling.h"
 
 namespace relook {
@@ -61,19 +63,7 @@ class TileCompressor {
   CompressedTile tile_;
 };
 
-}  // namespace
-
-bool is_compressible(const ColorChange& change) {
-  return change.reassigned.empty() && std::ranges::none_of(change.parameters.materials, [](const auto& material) {
-           return (material.second & kMappingMask) != 0;
-         });
-}
-
-CompressedTile compress_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, CompressedImage& image,
-                             Shader& shader) {
-  return TileCompressor(pass, tile, image, shader).compress(work.leaves);
-}
-
+/// Evaluates a valid tile and brings colours and frame up to date: the mask of its changed pixels.
 TileMask recolor_tile(const CompressedTile& compressed, std::size_t tile, const Scene& scene, StoredImage& stored,
                       ColorMemory& memory) {
   std::span<const std::uint32_t> samples(compressed.samples);
@@ -84,6 +74,100 @@ TileMask recolor_tile(const CompressedTile& compressed, std::size_t tile, const 
   TileMask changed{};
   stored.refresh_pixels(tile, compressed.samples, nullptr, changed);
   return changed;
+}
+
+/// How many of some samples may still be kept, asked from several tiles at once.
+class Room {
+ public:
+  explicit Room(std::uint64_t samples) : left_(static_cast<std::int64_t>(samples)) {}
+  /// False, and nothing taken, if they do not fit.
+  bool take(std::size_t samples) {
+    const auto count = static_cast<std::int64_t>(samples);
+    if (left_.fetch_sub(count) >= count) return true;
+    left_.fetch_add(count);
+    return false;
+  }
+
+ private:
+  std::atomic<std::int64_t> left_;
+};
+
+}  // namespace
+
+bool is_compressible(const ColorChange& change) {
+  return change.reassigned.empty() && std::ranges::none_of(change.parameters.materials, [](const auto& material) {
+           return (material.second & kMappingMask) != 0;
+         });
+}
+
+/// What invalid tiles are built from; empty if there are none.
+struct Recolorer::Search {
+  PathTasks tasks;
+  std::vector<TileWork> works;  // by tile
+};
+
+Recolorer::Search Recolorer::search(const StepChange& change, const CompressedImage& kept, StepResult& result,
+                                    StopWatch& watch) {
+  Search search;
+  if (!kept.is_valid()) {
+    search.tasks = selection_.find_tasks(change, stored_.search(rays_), programs_);
+    search.works.resize(kept.tiles.size());
+  }
+  watch.lap(result.seconds.select);
+  return search;
+}
+
+void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch& watch) {
+  CompressedImage& kept = compressed_.of(change.colors.parameters);
+  const std::vector<Leaves>* known_leaves = selection_.leaves(change);
+  Search found = search(change, kept, result, watch);
+  const Image& image = stored_.image();
+  const GrowScene grow{rays_, nullptr, image.view.max_depth, image.view.shadow_bits};
+  const std::vector<bool> near_tiles;
+  const UpdatePass pass{
+      image,   stored_.lights(), grow,         change,   found.tasks, stored_.classes(), stored_.regions(),
+      nullptr, near_tiles,       known_leaves, programs_};
+  parallel_for(found.works.size(), [&](std::size_t tile) {
+    if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);
+  });
+  std::vector<std::size_t> tiles;
+  for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) {
+    const bool has_work = !found.works.empty() && found.works[tile].leaves.any();
+    if (has_work || !kept.tiles[tile].samples.empty())
+      tiles.push_back(tile);
+    else
+      kept.tiles[tile].is_valid = true;  // none of its samples depends on the parameters
+    if (!found.works.empty()) result.counters.by_groups += found.works[tile].by_groups;
+  }
+  watch.lap(result.seconds.test);
+
+  std::vector<TileMask> changed(tiles.size());
+  std::vector<std::size_t> samples(tiles.size());
+  result.dependent.resize(kept.tiles.size());
+  result.touched.resize(kept.tiles.size());
+  Room room(compressed_.most_samples());
+  Pool<Shader> shaders;
+  parallel_for(tiles.size(), [&](std::size_t i) {
+    CompressedTile& tile = kept.tiles[tiles[i]];
+    if (!tile.is_valid) {
+      const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays_, programs_); });
+      tile = TileCompressor(pass, tiles[i], kept, *shader).compress(found.works[tiles[i]].leaves);
+    }
+    const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
+    changed[i] = recolor_tile(tile, tiles[i], rays_.scene(), stored_, *memory);
+    samples[i] = tile.samples.size();
+    result.dependent[tiles[i]] = tile.leaves;
+    if (!room.take(samples[i])) tile = {};  // at once, so that what cannot be kept does not pile up
+  });
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    result.changed_pixels.add(tiles[i], changed[i]);
+    result.counters.samples_affected += samples[i];
+    if (!kept.tiles[tiles[i]].is_valid) result.counters.color_trees_evicted += samples[i];
+  }
+  result.counters.color_trees_evaluated = result.counters.samples_affected;
+  if (!found.works.empty()) selection_.keep(change, std::move(found.tasks), result.dependent);
+  result.counters.color_trees_evicted += compressed_.trim();
+  watch.lap(result.seconds.evaluate);
 }
 
 }  // namespace relook

@@ -1,7 +1,10 @@
 // A step that changes colour parameters alone (paper 2.1, 3.3): the samples that depend on them are compressed when
 // the parameters change first, and afterwards only the residual programs are run.
 #pragma once
+#include "base/pool.h"
 #include "engine/compressed_edits.h"
+#include "engine/kept_selection.h"
+#include "engine/step_result.h"
 #include "engine/stored_image.h"
 #include "engine/tile_update.h"
 
@@ -10,13 +13,28 @@ namespace relook {
 /// True if compressed trees can follow the change.
 [[nodiscard]] bool is_compressible(const ColorChange& change);
 
-/// Compresses the trees of a tile's samples. `pass`: for the change; `work`: where to look.
-[[nodiscard]] CompressedTile compress_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,
-                                           CompressedImage& image, Shader& shader);
+/// Works on the parts of a replay, which outlive it.
+class Recolorer {
+ public:
+  Recolorer(StoredImage& stored, const RayScene& rays, ProgramTable& programs, KeptSelection& selection,
+            CompressedEdits& compressed)
+      : stored_(stored), rays_(rays), programs_(programs), selection_(selection), compressed_(compressed) {}
 
-/// Evaluates a valid tile and brings colours and frame up to date: the mask of its changed pixels. Tiles may be done at
-/// the same time.
-[[nodiscard]] TileMask recolor_tile(const CompressedTile& compressed, std::size_t tile, const Scene& scene,
-                                    StoredImage& stored, ColorMemory& memory);
+  /// Compresses what depends on the changed parameters, unless it is already, and evaluates it. Requires:
+  /// is_compressible(change.colors); no tree is touched; nothing is shown on top of the image.
+  void recolor(const StepChange& change, StepResult& result, StopWatch& watch);
+
+ private:
+  struct Search;
+  [[nodiscard]] Search search(const StepChange& change, const CompressedImage& kept, StepResult& result,
+                              StopWatch& watch);
+
+  StoredImage& stored_;
+  const RayScene& rays_;
+  ProgramTable& programs_;
+  KeptSelection& selection_;
+  CompressedEdits& compressed_;
+  Pool<ColorMemory> memory_;
+};
 
 }  // namespace relook

@@ -1,7 +1,6 @@
 #include "engine/replay.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -12,21 +11,6 @@
 
 namespace relook {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Adds the time since the last call to a field of Seconds.
-class StopWatch {
- public:
-  void lap(double& seconds) {
-    const Clock::time_point now = Clock::now();
-    seconds += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  Clock::time_point last_ = Clock::now();
-};
 
 /// The tiles with anything to do, most work first, so that threads end together.
 std::vector<std::size_t> by_work(const std::vector<TileWork>& works) {
@@ -53,7 +37,7 @@ struct Replayer::Impl {
   ProgramTable programs;
   KeptSelection selection;
   CompressedEdits compressed;
-  Pool<ColorMemory> memory;
+  Recolorer recolorer{stored, rays, programs, selection, compressed};
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
   std::vector<ShownSamples> on_top;   // by tile, while objects are lifted: where they are seen
@@ -226,8 +210,9 @@ struct Replayer::Impl {
   void update(StepChange& change, StepResult& result, StopWatch& watch,
               const std::vector<ShownSamples>& also_shown = {}) {
     std::vector<TileUpdate> updates;
-    if (!change.touches_rays() && compressed.keeps_any() && is_compressible(change.colors) && also_shown.empty()) {
-      if (!change.colors.empty()) recolor(change, result, watch);
+    if (!change.touches_rays() && compressed.most_samples() > 0 && is_compressible(change.colors) &&
+        also_shown.empty()) {
+      if (!change.colors.empty()) recolorer.recolor(change, result, watch);
       return;
     }
     if (!change.touches_rays() && change.colors.empty() && also_shown.empty()) return;
@@ -244,70 +229,8 @@ struct Replayer::Impl {
     watch.lap(result.seconds.evaluate);
   }
 
-  /// Colour parameters alone have changed: what depends on them is compressed, unless it is already, and evaluated.
-  void recolor(const StepChange& change, StepResult& result, StopWatch& watch) {
-    CompressedImage& kept = compressed.of(change.colors.parameters);
-    std::vector<TileWork> works;
-    PathTasks tasks;
-    const std::vector<Leaves>* known_leaves = selection.leaves(change);
-    if (!kept.is_valid()) {
-      tasks = find_tasks(change);
-      works.resize(kept.tiles.size());
-    }
-    watch.lap(result.seconds.select);
-    const GrowScene scene = grow(nullptr);
-    const std::vector<bool> near_tiles;
-    const UpdatePass pass{image(),          stored.lights(), scene,      change,       tasks,   stored.classes(),
-                          stored.regions(), nullptr,         near_tiles, known_leaves, programs};
-    parallel_for(works.size(), [&](std::size_t tile) {
-      if (!kept.tiles[tile].is_valid) works[tile] = find_tile_work(pass, tile);
-    });
-    std::vector<std::size_t> tiles;
-    for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) {
-      if (!kept.tiles[tile].samples.empty() || (!works.empty() && works[tile].leaves.any())) tiles.push_back(tile);
-      if (!works.empty()) result.counters.by_groups += works[tile].by_groups;
-    }
-    watch.lap(result.seconds.test);
-    std::vector<TileMask> changed(tiles.size());
-    Pool<Shader> shaders;
-    parallel_for(tiles.size(), [&](std::size_t i) {
-      CompressedTile& tile = kept.tiles[tiles[i]];
-      if (!tile.is_valid) {
-        const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays, programs); });
-        tile = compress_tile(pass, tiles[i], works[tiles[i]], kept, *shader);
-      }
-      const auto room = memory.take([] { return std::make_unique<ColorMemory>(); });
-      changed[i] = recolor_tile(tile, tiles[i], state.scene(), stored, *room);
-    });
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-      result.changed_pixels.add(tiles[i], changed[i]);
-      result.counters.samples_affected += kept.tiles[tiles[i]].samples.size();
-    }
-    result.counters.color_trees_evaluated = result.counters.samples_affected;
-    finish_recolor(change, kept, std::move(works), std::move(tasks), result);
-    watch.lap(result.seconds.evaluate);
-  }
-
-  /// Keeps what a recolouring has found for the next ones.
-  void finish_recolor(const StepChange& change, CompressedImage& kept, const std::vector<TileWork>& works,
-                      PathTasks tasks, StepResult& result) {
-    result.dependent.resize(kept.tiles.size());
-    result.touched.resize(kept.tiles.size());
-    for (std::size_t tile = 0; tile < kept.tiles.size(); ++tile) result.dependent[tile] = kept.tiles[tile].leaves;
-    if (!works.empty()) {
-      for (CompressedTile& tile : kept.tiles) tile.is_valid = true;  // those without work have no samples
-      kept.invalid = 0;
-      selection.keep(change, std::move(tasks), result.dependent);
-    }
-    compressed.trim();
-  }
-
   [[nodiscard]] PathTasks find_tasks(const StepChange& change) {
-    const PathTasks* known = selection.tasks(change);
-    if (known != nullptr) return *known;
-    return find_path_tasks(
-        {rays, image().paths, stored.index(), stored.lights(), image().view.shadow_bits, stored.classes()}, change,
-        programs);
+    return selection.find_tasks(change, stored.search(rays), programs);
   }
 
   void finish(StepResult& result) {

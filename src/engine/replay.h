@@ -6,22 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "edit/apply.h"
-#include "engine/changed_pixels.h"
-#include "engine/counters.h"
 #include "engine/image.h"
 #include "engine/regions.h"
+#include "engine/step_result.h"
 #include "scene/state.h"
 
 namespace relook {
-
-struct StepResult {
-  Classification classification;
-  Counters counters;
-  Seconds seconds;  // classify .. evaluate; write and total are the caller's
-  ChangedPixels changed_pixels;
-  std::vector<Leaves> dependent, touched;  // by tile: leaves whose paths the change reaches, whose tunnels it may touch
-};
 
 class Replayer {
  public:

@@ -47,8 +47,10 @@ Json resident_json(const Resident& resident) {
           {"total", resident.total}};
 }
 
-/// Residency is a later feature: nothing is ever evicted.
-Json no_residency_changes() { return {{"ray_trees", 0}, {"color_trees", 0}, {"tunnels", 0}, {"total", 0}}; }
+/// Colour trees alone are ever dropped, and none is read back.
+Json residency_json(std::uint64_t color_trees) {
+  return {{"ray_trees", 0}, {"color_trees", color_trees}, {"tunnels", 0}, {"total", color_trees}};
+}
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
   if (!verify) return nullptr;
@@ -85,9 +87,9 @@ Json step_json(const StepReport& step) {
       {"color_trees_evaluated", counters.color_trees_evaluated},
       {"seconds", seconds_json(step.seconds)},
       {"resident", resident_json(step.resident)},
-      {"evicted", no_residency_changes()},
-      {"rebuilt", no_residency_changes()},
-      {"reloaded", no_residency_changes()},
+      {"evicted", residency_json(counters.color_trees_evicted)},
+      {"rebuilt", residency_json(0)},
+      {"reloaded", residency_json(0)},
       {"peak_rss", step.peak_rss_bytes},
       {"verify", verify_json(step.verify)}};
 }

@@ -8,6 +8,7 @@
 #include "engine/image.h"
 #include "engine/path_classes.h"
 #include "engine/path_index.h"
+#include "engine/path_tasks.h"
 #include "engine/regions.h"
 #include "engine/tile_update.h"
 
@@ -29,6 +30,10 @@ class StoredImage {
   [[nodiscard]] const PathIndex& index() const { return index_; }
   [[nodiscard]] const PathClasses& classes() const { return classes_; }
   [[nodiscard]] const ImageRegions& regions() const { return regions_; }
+  /// The image side of a search for paths. `rays`: after the change; outlives it, as does this.
+  [[nodiscard]] PathSearch search(const RayScene& rays) const {
+    return {rays, image_.paths, index_, lights_, image_.view.shadow_bits, classes_};
+  }
   [[nodiscard]] std::uint64_t segments() const { return segments_; }
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
 

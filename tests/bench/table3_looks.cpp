@@ -141,7 +141,9 @@ void print_steps(Replayer& replayer, const Journal& journal, double full_seconds
 }
 
 void print_looks(const BenchOptions& options, const Image& image, const Journal& journal, double full_seconds) {
-  Replayer without(load_scene(options), image, {.groups = 0}), with(load_scene(options), image, {.groups = 4});
+  // Without colour trees, so that each edit looks for its samples.
+  Replayer without(load_scene(options), image, {.groups = 0, .color_trees = 0});
+  Replayer with(load_scene(options), image, {.groups = 4, .color_trees = 0});
   SearchTimer search(load_scene(options));
   std::vector<LookPair> looks;
   for (const JournalStep& step : journal.steps) {
