@@ -1,6 +1,7 @@
 #include "engine/replay.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -12,13 +13,26 @@
 namespace relook {
 namespace {
 
-/// The tiles with anything to do, most work first, so that threads end together.
-std::vector<std::size_t> by_work(const std::vector<TileWork>& works) {
-  std::vector<std::size_t> tiles;
+/// For the tiles with anything to do, in their order, what is to become of them.
+std::vector<TileUpdate> updates_to_do(const std::vector<TileWork>& works) {
+  std::vector<TileUpdate> updates;
   for (std::size_t tile = 0; tile < works.size(); ++tile)
-    if (works[tile].leaves.any()) tiles.push_back(tile);
-  std::ranges::stable_sort(tiles, std::greater(), [&](std::size_t tile) { return works[tile].leaves.count(); });
-  return tiles;
+    if (works[tile].leaves.any()) updates.emplace_back().tile = tile;
+  return updates;
+}
+
+/// Indices of the updates, most work first, so that threads end together.
+std::vector<std::size_t> by_work(const std::vector<TileUpdate>& updates, const std::vector<TileWork>& works) {
+  std::vector<std::size_t> order(updates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return works[updates[i].tile].leaves.count(); });
+  return order;
+}
+
+/// The update of a tile, if there is one.
+const TileUpdate* find_update(const std::vector<TileUpdate>& updates, std::size_t tile) {
+  const auto found = std::ranges::lower_bound(updates, tile, {}, &TileUpdate::tile);
+  return found != updates.end() && found->tile == tile ? &*found : nullptr;
 }
 
 /// How many values two increasing lists have in common.
@@ -69,15 +83,10 @@ struct Replayer::Impl {
     if (change.colors.new_environment) programs.forget_environment();
   }
 
-  /// What one pass did, for the report.
-  struct PassResult {
-    std::vector<TileUpdate> updates;  // by tile
-    std::vector<TileWork> works;
-  };
-
-  /// Works `change` out against the stored trees; `absent`: objects that are in no ray tree afterwards.
-  PassResult run(StepChange& change, std::span<const ObjectId> absent, bool keeps_trees, StepResult& result,
-                 StopWatch& watch) {
+  /// Works `change` out against the stored trees; `absent`: objects that are in no ray tree afterwards. Returns the
+  /// updates of the tiles that it may reach, in their order.
+  std::vector<TileUpdate> run(StepChange& change, std::span<const ObjectId> absent, bool keeps_trees,
+                              StepResult& result, StopWatch& watch) {
     const std::vector<Leaves>* known_leaves = selection.leaves(change);
     PathTasks tasks = find_tasks(change);
     watch.lap(result.seconds.select);
@@ -112,42 +121,45 @@ struct Replayer::Impl {
                           known_leaves,
                           programs,
                           keeps_trees};
-    PassResult done;
-    done.updates.resize(image().trees.size());
-    done.works.resize(image().trees.size());
-    parallel_for(image().trees.size(), [&](std::size_t tile) { done.works[tile] = find_tile_work(pass, tile); });
+    std::vector<TileWork> works(image().trees.size());
+    parallel_for(works.size(), [&](std::size_t tile) { works[tile] = find_tile_work(pass, tile); });
     watch.lap(result.seconds.test);
     Pool<Shader> shaders;
-    const std::vector<std::size_t> tiles = by_work(done.works);
-    parallel_for(tiles.size(), [&](std::size_t i) {
-      done.updates[tiles[i]] = update_tile(pass, tiles[i], done.works[tiles[i]], shaders);
+    std::vector<TileUpdate> updates = updates_to_do(works);
+    const std::vector<std::size_t> order = by_work(updates, works);
+    parallel_for(order.size(), [&](std::size_t i) {
+      TileUpdate& update = updates[order[i]];
+      update = update_tile(pass, update.tile, works[update.tile], shaders);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-    count(done, uses_tunnels, result);
+    count(updates, works, uses_tunnels, result);
     std::vector<Leaves> leaves;
-    for (const TileWork& work : done.works) leaves.push_back(work.by_path);
+    for (const TileWork& work : works) leaves.push_back(work.by_path);
     selection.keep(change, std::move(tasks), std::move(leaves));
-    return done;
+    return updates;
   }
 
-  void count(const PassResult& done, bool uses_tunnels, StepResult& result) const {
+  /// `works`: by tile.
+  void count(const std::vector<TileUpdate>& updates, const std::vector<TileWork>& works, bool uses_tunnels,
+             StepResult& result) const {
     Counters& counters = result.counters;
-    std::uint64_t tests = 0;
-    result.dependent.resize(done.works.size());
-    result.touched.resize(done.works.size());
-    for (std::size_t tile = 0; tile < done.updates.size(); ++tile) {
-      const TileUpdate& update = done.updates[tile];
-      const TileWork& work = done.works[tile];
+    result.dependent.resize(works.size());
+    result.touched.resize(works.size());
+    for (std::size_t tile = 0; tile < works.size(); ++tile) {
+      const TileWork& work = works[tile];
       result.dependent[tile] |= work.by_path;
       result.touched[tile] |= work.leaves & ~work.by_path;
       for (const LeafTouches& leaf : work.touched) result.touched[tile].set(leaf.leaf);
+      counters.by_groups += work.by_groups;
+      counters.by_tunnels += work.by_tunnels;
+    }
+    std::uint64_t tests = 0;
+    for (const TileUpdate& update : updates) {
       counters.samples_affected += update.shaded.size();
       counters.color_trees_evaluated += update.shaded.size();
       tests += update.counters.ray_tests;
       counters.ray_updates += update.counters.ray_updates;
       counters.shadow_updates += update.counters.shadow_updates;
-      counters.by_groups += work.by_groups;
-      counters.by_tunnels += work.by_tunnels;
     }
     require(tests <= stored.segments(), "each stored segment is tested once at most");
     counters.ray_tests += tests;
@@ -185,47 +197,51 @@ struct Replayer::Impl {
   void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
     if (!change.touches_rays()) return;
     stored.keep_trees(updates, grow(nullptr), change.rays.lights_changed);
-    for (std::size_t tile = 0; tile < updates.size(); ++tile)
-      if (!updates[tile].packed.empty()) compressed.note_trees(tile);
+    for (const TileUpdate& update : updates)
+      if (!update.packed.empty()) compressed.note_trees(update.tile);
   }
   void keep_colors(const std::vector<TileUpdate>& updates) {
     parallel_for(updates.size(),
-                 [&](std::size_t tile) { stored.keep_colors(tile, updates[tile].shaded, updates[tile].colors); });
+                 [&](std::size_t i) { stored.keep_colors(updates[i].tile, updates[i].shaded, updates[i].colors); });
   }
 
-  /// Works pixels out again: `refresh(tile, refresh_samples)` calls refresh_samples(samples) for those of a tile.
-  template <class Refresh>
-  void refresh_pixels(const Refresh& refresh, StepResult& result) {
-    std::vector<TileMask> changed(image().trees.size());
-    parallel_for(changed.size(), [&](std::size_t tile) {
-      refresh(tile, [&](std::span<const std::uint32_t> samples) {
-        stored.refresh_pixels(tile, samples, on_top.empty() ? nullptr : &on_top[tile], changed[tile]);
-      });
+  /// Works pixels out again that lie under the samples with new colours or, by tile, under `others`.
+  void refresh_pixels(const std::vector<TileUpdate>& updates, const std::vector<ShownSamples>& others,
+                      StepResult& result) {
+    std::vector<std::size_t> tiles;
+    for (const TileUpdate& update : updates)
+      if (!update.shaded.empty()) tiles.push_back(update.tile);
+    for (std::size_t tile = 0; tile < others.size(); ++tile)
+      if (!others[tile].samples.empty()) tiles.push_back(tile);
+    std::ranges::sort(tiles);
+    tiles.erase(std::ranges::unique(tiles).begin(), tiles.end());
+    std::vector<TileMask> changed(tiles.size());
+    parallel_for(tiles.size(), [&](std::size_t i) {
+      const std::size_t tile = tiles[i];
+      const auto refresh = [&](std::span<const std::uint32_t> samples) {
+        stored.refresh_pixels(tile, samples, on_top.empty() ? nullptr : &on_top[tile], changed[i]);
+      };
+      if (const TileUpdate* update = find_update(updates, tile)) refresh(update->shaded);
+      if (!others.empty()) refresh(others[tile].samples);
     });
-    for (std::size_t tile = 0; tile < changed.size(); ++tile) result.changed_pixels.add(tile, changed[tile]);
+    for (std::size_t i = 0; i < tiles.size(); ++i) result.changed_pixels.add(tiles[i], changed[i]);
   }
 
   /// Brings trees, colours and frame up to date with the scene, where `also_shown` was seen on top so far; finish()
   /// follows.
   void update(StepChange& change, StepResult& result, StopWatch& watch,
               const std::vector<ShownSamples>& also_shown = {}) {
-    std::vector<TileUpdate> updates;
     if (!change.touches_rays() && compressed.most_samples() > 0 && is_compressible(change.colors) &&
         also_shown.empty()) {
       if (!change.colors.empty()) recolorer.recolor(change, result, watch);
       return;
     }
     if (!change.touches_rays() && change.colors.empty() && also_shown.empty()) return;
-    updates = run(change, {}, true, result, watch).updates;
+    const std::vector<TileUpdate> updates = run(change, {}, true, result, watch);
     keep_trees(updates, change);
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
     keep_colors(updates);
-    refresh_pixels(
-        [&](std::size_t tile, const auto& refresh_samples) {
-          refresh_samples(updates[tile].shaded);
-          if (!also_shown.empty()) refresh_samples(also_shown[tile].samples);
-        },
-        result);
+    refresh_pixels(updates, also_shown, result);
     watch.lap(result.seconds.evaluate);
   }
 
@@ -297,11 +313,11 @@ struct Replayer::Impl {
     if (on_top.empty()) on_top.resize(image().trees.size());
     for (ObjectId id : lifted) change.rays.objects[id.index()] = 0;  // not in any tree
     lifted = std::move(all);
-    PassResult done = run(change, lifted, true, result, watch);
-    keep_trees(done.updates, change);
-    keep_colors(done.updates);
+    std::vector<TileUpdate> updates = run(change, lifted, true, result, watch);
+    keep_trees(updates, change);
+    keep_colors(updates);
     watch.lap(result.seconds.update);
-    return std::move(done.updates);
+    return updates;
   }
 
   /// Second step: the selection is rendered where it is; the ray trees stay without it. `removed`: what the first step
@@ -309,20 +325,20 @@ struct Replayer::Impl {
   void show_selection(const std::vector<TileUpdate>& removed, StepResult& result, StopWatch& watch) {
     if (lifted.empty()) return;  // nothing has moved yet
     StepChange change = put_back();
-    const PassResult done = run(change, {}, false, result, watch);
-    if (!removed.empty())
-      for (std::size_t tile = 0; tile < done.updates.size(); ++tile)
-        result.counters.samples_affected -= common(removed[tile].shaded, done.updates[tile].shaded);
-    refresh_pixels(
-        [&](std::size_t tile, const auto& refresh_samples) {
-          const TileUpdate& update = done.updates[tile];
-          const std::vector<std::uint32_t> shown = std::exchange(on_top[tile].samples, update.shaded);
-          on_top[tile].colors = update.colors;
-          if (!removed.empty()) refresh_samples(removed[tile].shaded);
-          refresh_samples(shown);
-          refresh_samples(update.shaded);
-        },
-        result);
+    std::vector<TileUpdate> updates = run(change, {}, false, result, watch);
+    std::vector<ShownSamples> others = std::exchange(on_top, std::vector<ShownSamples>(image().trees.size()));
+    for (const TileUpdate& update : removed) {
+      std::vector<std::uint32_t>& other = others[update.tile].samples;
+      std::vector<std::uint32_t> both;
+      std::ranges::set_union(other, update.shaded, std::back_inserter(both));
+      other = std::move(both);
+    }
+    for (TileUpdate& update : updates) {
+      if (const TileUpdate* also = find_update(removed, update.tile))
+        result.counters.samples_affected -= common(also->shaded, update.shaded);
+      on_top[update.tile] = {update.shaded, std::move(update.colors)};
+    }
+    refresh_pixels(updates, others, result);
     watch.lap(result.seconds.evaluate);
   }
 

@@ -91,19 +91,20 @@ void StoredImage::keep_trees(const std::vector<TileUpdate>& updates, const GrowS
   }
   lights_ = scene.scene.scene().light_order;
   std::vector<std::vector<PathId>> ids(updates.size());
-  for (std::size_t tile = 0; tile < updates.size(); ++tile)
-    for (std::uint32_t i = 0; i < updates[tile].paths.size(); ++i)
-      ids[tile].push_back(image_.paths.intern(updates[tile].paths.words(PathId(i))));
+  for (std::size_t k = 0; k < updates.size(); ++k)
+    for (std::uint32_t i = 0; i < updates[k].paths.size(); ++i)
+      ids[k].push_back(image_.paths.intern(updates[k].paths.words(PathId(i))));
   index_paths();
-  parallel_for(updates.size(), [&](std::size_t tile) {
-    if (updates[tile].packed.empty()) return;
-    store_trees(image_.trees[tile], updates[tile], ids[tile]);
-    count_segments(tile);
-    regions_.update(image_, scene, tile, leaves_of(tile, updates[tile].packed), class_of());
+  parallel_for(updates.size(), [&](std::size_t k) {
+    const TileUpdate& update = updates[k];
+    if (update.packed.empty()) return;
+    store_trees(image_.trees[update.tile], update, ids[k]);
+    count_segments(update.tile);
+    regions_.update(image_, scene, update.tile, leaves_of(update.tile, update.packed), class_of());
   });
   std::vector<std::size_t> changed;
-  for (std::size_t tile = 0; tile < updates.size(); ++tile)
-    if (!updates[tile].packed.empty()) changed.push_back(tile);
+  for (const TileUpdate& update : updates)
+    if (!update.packed.empty()) changed.push_back(update.tile);
   regions_.update_image(changed);
   segments_ = 0;
   for (std::uint64_t count : tile_segments_) segments_ += count;

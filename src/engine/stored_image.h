@@ -46,7 +46,7 @@ class StoredImage {
   /// Requires: the trees hold in `scene`.
   void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
 
-  /// Takes over new trees, by tile, and keeps the regions equal to what would be built from them. `scene`: in which
+  /// Takes over new trees, an update a tile, and keeps the regions equal to what would be built from them. `scene`: in which
   /// they hold. `lights_changed`: all samples have been packed anew, since the form of paths follows the light order.
   void keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.

@@ -17,7 +17,9 @@ class TileUpdater {
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
-        shader_(shader) {}
+        shader_(shader) {
+    result_.tile = tile;
+  }
 
   TileUpdate update(const TileWork& work) {
     for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
@@ -124,7 +126,6 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
 }
 
 TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<Shader>& shaders) {
-  if (work.leaves.none()) return {};
   const auto shader = shaders.take([&] { return std::make_unique<Shader>(pass.grow.scene, pass.programs); });
   return TileUpdater(pass, tile, *shader).update(work);
 }

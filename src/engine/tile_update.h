@@ -21,6 +21,7 @@ struct TileWork {
 
 /// What became of the samples of one tile.
 struct TileUpdate {
+  std::size_t tile = 0;
   std::vector<std::uint32_t> shaded;  // samples with new colours
   std::vector<Rgba> colors;           // of `shaded`
   std::vector<std::uint32_t> packed;  // samples with new trees, increasing
