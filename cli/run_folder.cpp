@@ -43,28 +43,31 @@ RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint3
 
 void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels, FrameMeta meta) {
   const auto start = std::chrono::steady_clock::now();
-  const bool is_first = preview_.empty();
-  if (is_first) {
+  finish_writing();
+  if (frame_hashes_.empty()) {
     encoder_.update(frame);
     preview_encoder_.update(frame);
-  } else {
+  } else if (!changed_pixels.empty()) {
     encoder_.update(frame, changed_pixels);
     preview_encoder_.update(frame, changed_pixels);
+    preview_is_stale_ = true;
   }
-  if (is_first || !changed_pixels.empty()) preview_ = preview_encoder_.png();
   meta.step = step_label(step.step, step.frame_in_step());
   meta.change_class = change_class_name(step.change);
-  Bytes bytes = encoder_.exr(meta);
   step.frame = frame_name(step.step, step.frame_in_step());
   step.preview = preview_name(step.step, step.frame_in_step());
-  step.frame_hash = hash128(bytes);
-  finish_writing();
-  writing_ = std::async(std::launch::async, [frame_path = path_ / step.frame, preview_path = path_ / step.preview,
-                                             bytes = std::move(bytes), preview = preview_] {
-    write_file(frame_path, bytes);
-    write_file(preview_path, preview);
-  });
+  writing_ = std::async(std::launch::async, [this, frame_path = path_ / step.frame, preview_path = path_ / step.preview,
+                                             meta = std::move(meta)] { write_frame(frame_path, preview_path, meta); });
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void RunFolder::write_frame(const std::filesystem::path& frame, const std::filesystem::path& preview,
+                            const FrameMeta& meta) {
+  const Bytes bytes = encoder_.exr(meta);
+  write_file(frame, bytes);
+  frame_hashes_.push_back(hash128(bytes));
+  if (std::exchange(preview_is_stale_, false)) preview_ = preview_encoder_.png();
+  write_file(preview, preview_);
 }
 
 void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result) const {
@@ -87,8 +90,10 @@ void RunFolder::finish_writing() {
   if (writing_.valid()) writing_.get();
 }
 
-void RunFolder::write_report(const RunReport& report) {
+void RunFolder::write_report(RunReport& report) {
   finish_writing();
+  require(frame_hashes_.size() == report.steps.size(), "each step of a report has written its frame");
+  for (std::size_t i = 0; i < report.steps.size(); ++i) report.steps[i].frame_hash = frame_hashes_[i];
   write_file(path_ / "report.json", report_json(report).dump(2) + "\n");
 }
 

@@ -25,24 +25,27 @@ struct FrameMeta {
   std::string change_class;  // change_class_name()
 };
 
-/// The compressed tiles of one frame. Finite values beyond the range of half become its largest ones.
+/// The compressed tiles of one frame. Finite values beyond the range of half become its largest ones. Taking pixels is
+/// quick, and exr() needs no frame: it may run on another thread while the next frame is computed.
 class FrameEncoder {
  public:
   FrameEncoder(std::uint32_t width, std::uint32_t height, PixelFormat format);
 
-  /// Compresses all tiles.
+  /// Takes all tiles.
   void update(const Frame& frame);
-  /// Compresses the tiles of the pixels that changed since the last update.
+  /// Takes the tiles of the pixels that changed since the last update.
   void update(const Frame& frame, const ChangedPixels& changed_pixels);
-  /// The bytes of the file.
-  [[nodiscard]] Bytes exr(const FrameMeta& meta) const;
+  /// Compresses the tiles taken since the last call; the bytes of the file.
+  [[nodiscard]] Bytes exr(const FrameMeta& meta);
 
  private:
-  void compress(const Frame& frame, std::span<const std::uint32_t> tiles);
+  void take(const Frame& frame, std::span<const std::uint32_t> tiles);
+  void compress_taken();
 
   std::uint32_t width_, height_;
   PixelFormat format_;
-  std::vector<Bytes> chunks_;  // [tile_count]
+  std::vector<std::vector<unsigned char>> taken_;  // [tile_count], uncompressed; empty when the chunk is up to date
+  std::vector<Bytes> chunks_;                      // [tile_count]
 };
 
 [[nodiscard]] Bytes encode_exr(const Frame& frame, const FrameMeta& meta, PixelFormat format);

@@ -1,13 +1,12 @@
 #include "engine/preview.h"
 
+#include <isa-l/igzip_lib.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
-#include <new>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -70,92 +69,104 @@ void append_chunk(Bytes& out, std::string_view type, BytesView data) {
   append_number(out, static_cast<std::uint32_t>(sum));
 }
 
-constexpr std::uint32_t kBandRows = 64;
-
-/// Rows of 3 bytes a pixel, each led by its filter (1: differences to the left neighbour).
-std::vector<unsigned char> filtered_rows(const Frame& frame, std::uint32_t first_row, std::uint32_t last_row) {
-  static const SrgbCodes codes_of;
-  std::vector<unsigned char> rows((1 + std::size_t{frame.width} * 3) * (last_row - first_row));
-  unsigned char* out = rows.data();
-  for (std::uint32_t y = first_row; y < last_row; ++y) {
-    *out++ = 1;
-    std::array<unsigned char, 3> left{};
-    for (std::size_t x = 0; x < frame.width; ++x) {
-      const Rgba& pixel = frame.pixels[std::size_t{y} * frame.width + x];
-      const std::array<unsigned char, 3> codes{codes_of.of(pixel.r), codes_of.of(pixel.g), codes_of.of(pixel.b)};
-      for (std::size_t c = 0; c < 3; ++c) *out++ = static_cast<unsigned char>(codes[c] - left[c]);
-      left = codes;
-    }
-  }
-  return rows;
-}
+constexpr std::uint32_t kBandRows = 16;
 
 /// Deflate blocks that end on a byte and are not the last of their stream.
 Bytes deflate_blocks(std::vector<unsigned char>& rows) {
-  constexpr int kFastest = 1, kRawDeflate = -15, kMemoryLevel = 8;
-  constexpr std::size_t kFlushBytes = 16;
-  Bytes packed(compressBound(static_cast<uLong>(rows.size())) + kFlushBytes);
-  z_stream stream{};
-  const int started = deflateInit2(&stream, kFastest, Z_DEFLATED, kRawDeflate, kMemoryLevel, Z_RLE);
-  if (started == Z_MEM_ERROR) throw std::bad_alloc();
-  require(started == Z_OK, "zlib starts with these settings");
+  constexpr std::size_t kMostOverhead = 1024;  // beyond stored blocks
+  Bytes packed(rows.size() + rows.size() / 64 + kMostOverhead);
+  std::vector<std::uint8_t> memory(ISAL_DEF_LVL1_DEFAULT);
+  isal_zstream stream{};
+  isal_deflate_stateless_init(&stream);
+  stream.level = 1;
+  stream.level_buf = memory.data();
+  stream.level_buf_size = static_cast<std::uint32_t>(memory.size());
+  stream.flush = FULL_FLUSH;
+  stream.end_of_stream = 0;
   stream.next_in = rows.data();
-  stream.avail_in = static_cast<uInt>(rows.size());
-  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
-  stream.avail_out = static_cast<uInt>(packed.size());
-  const int result = deflate(&stream, Z_FULL_FLUSH);
-  const std::size_t packed_size = packed.size() - stream.avail_out;
-  const bool is_whole = result == Z_OK && stream.avail_in == 0 && stream.avail_out > 0;
-  deflateEnd(&stream);
+  stream.avail_in = static_cast<std::uint32_t>(rows.size());
+  stream.next_out = reinterpret_cast<std::uint8_t*>(packed.data());
+  stream.avail_out = static_cast<std::uint32_t>(packed.size());
+  const bool is_whole = isal_deflate_stateless(&stream) == COMP_OK && stream.avail_in == 0;
   require(is_whole, "deflate into a buffer of its own bound succeeds");
-  return {packed.data(), packed.data() + packed_size};
+  packed.resize(packed.size() - stream.avail_out);
+  return packed;
 }
 
 }  // namespace
 
 PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height)
-    : width_(width), height_(height), bands_((height + kBandRows - 1) / kBandRows) {}
+    : width_(width),
+      height_(height),
+      codes_(std::size_t{width} * height * 3),
+      bands_((height + kBandRows - 1) / kBandRows) {}
 
-std::size_t PreviewEncoder::band_bytes(std::size_t band) const {
-  const std::size_t first_row = band * kBandRows;
-  return (1 + std::size_t{width_} * 3) * (std::min<std::size_t>(first_row + kBandRows, height_) - first_row);
+std::uint32_t PreviewEncoder::end_row(std::size_t band) const {
+  return std::min(static_cast<std::uint32_t>(band + 1) * kBandRows, height_);
 }
 
-void PreviewEncoder::compress(const Frame& frame, std::span<const std::uint32_t> bands) {
-  require(frame.width == width_ && frame.height == height_, "a preview encoder keeps one size");
-  parallel_for(bands.size(), [&](std::size_t i) {
-    const std::uint32_t first_row = bands[i] * kBandRows;
-    std::vector<unsigned char> rows = filtered_rows(frame, first_row, std::min(first_row + kBandRows, height_));
-    const uLong checksum = adler32(1, rows.data(), static_cast<uInt>(rows.size()));
-    bands_[bands[i]] = {deflate_blocks(rows), static_cast<std::uint32_t>(checksum)};
-  });
+void PreviewEncoder::take(const Frame& frame, std::uint32_t x, std::uint32_t y) {
+  static const SrgbCodes codes_of;
+  const std::size_t index = std::size_t{y} * width_ + x;
+  const Rgba& pixel = frame.pixels[index];
+  unsigned char* codes = &codes_[index * 3];
+  codes[0] = codes_of.of(pixel.r);
+  codes[1] = codes_of.of(pixel.g);
+  codes[2] = codes_of.of(pixel.b);
 }
 
 void PreviewEncoder::update(const Frame& frame) {
-  std::vector<std::uint32_t> all(bands_.size());
-  std::iota(all.begin(), all.end(), 0U);
-  compress(frame, all);
+  require(frame.width == width_ && frame.height == height_, "a preview encoder keeps one size");
+  parallel_for(bands_.size(), [&](std::size_t band) {
+    for (auto y = static_cast<std::uint32_t>(band) * kBandRows; y < end_row(band); ++y)
+      for (std::uint32_t x = 0; x < width_; ++x) take(frame, x, y);
+    bands_[band].is_stale = true;
+  });
 }
 
 void PreviewEncoder::update(const Frame& frame, const ChangedPixels& changed_pixels) {
-  const std::uint32_t tiles_across = (width_ + kTileSize - 1) / kTileSize;
-  std::vector<bool> touched(bands_.size());
-  for (const ChangedPixels::Tile& tile : changed_pixels.tiles())
-    for (std::uint32_t y = 0; y < kTileSize; ++y)
-      if (tile.mask[y] != 0) touched[(tile.tile / tiles_across * kTileSize + y) / kBandRows] = true;
-  std::vector<std::uint32_t> bands;
-  for (std::uint32_t band = 0; band < touched.size(); ++band)
-    if (touched[band]) bands.push_back(band);
-  compress(frame, bands);
+  require(frame.width == width_ && frame.height == height_, "a preview encoder keeps one size");
+  for (const ChangedPixels::Tile& tile : changed_pixels.tiles()) {
+    const TileRect rect = tile_rect(tile.tile, width_, height_);
+    for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
+      std::uint64_t row = tile.mask[y - rect.y0];
+      if (row != 0) bands_[y / kBandRows].is_stale = true;
+      for (; row != 0; row &= row - 1) take(frame, rect.x0 + static_cast<std::uint32_t>(std::countr_zero(row)), y);
+    }
+  }
 }
 
-Bytes PreviewEncoder::png() const {
+/// Rows of 3 bytes a pixel, each led by its filter (1: differences to the left neighbour).
+std::vector<unsigned char> PreviewEncoder::filtered_rows(std::size_t band) const {
+  constexpr std::size_t kChannels = 3;
+  const std::size_t row_bytes = std::size_t{width_} * kChannels;
+  const std::size_t first_row = band * kBandRows;
+  std::vector<unsigned char> rows((1 + row_bytes) * (end_row(band) - first_row));
+  unsigned char* out = rows.data();
+  for (std::size_t y = first_row; y < end_row(band); ++y, out += row_bytes) {
+    const unsigned char* codes = &codes_[y * row_bytes];
+    *out++ = 1;
+    std::copy_n(codes, kChannels, out);
+    for (std::size_t i = kChannels; i < row_bytes; ++i)
+      out[i] = static_cast<unsigned char>(codes[i] - codes[i - kChannels]);
+  }
+  return rows;
+}
+
+Bytes PreviewEncoder::png() {
+  parallel_for(bands_.size(), [&](std::size_t i) {
+    if (!bands_[i].is_stale) return;
+    std::vector<unsigned char> rows = filtered_rows(i);
+    const uLong checksum = adler32(1, rows.data(), static_cast<uInt>(rows.size()));
+    bands_[i] = {false, deflate_blocks(rows), static_cast<std::uint32_t>(checksum)};
+  });
   Bytes stream;
   for (const int value : {0x78, 0x01}) stream.push_back(static_cast<std::byte>(value));  // zlib: 32 KB window, fastest
   uLong checksum = 1;
   for (std::size_t band = 0; band < bands_.size(); ++band) {
     append(stream, bands_[band].deflated);
-    checksum = adler32_combine(checksum, bands_[band].checksum, static_cast<z_off_t>(band_bytes(band)));
+    const std::size_t band_bytes = (1 + std::size_t{width_} * 3) * (end_row(band) - band * kBandRows);
+    checksum = adler32_combine(checksum, bands_[band].checksum, static_cast<z_off_t>(band_bytes));
   }
   for (const int value : {0x03, 0x00}) stream.push_back(static_cast<std::byte>(value));  // an empty last block
   append_number(stream, static_cast<std::uint32_t>(checksum));
