@@ -99,6 +99,9 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_flag("--verify{100}", raw.verify, "Compare with a full render after each step; =PERCENT of the tiles");
   replay.add_flag("--baseline", arguments.baseline, "Measure one full render for the report");
   replay.add_flag("--overlays", arguments.overlays, "Write images of the regions that each step found, on its frame");
+  replay.add_flag("--strict", arguments.strict,
+                  "Refuse a cache with any damage, instead of tracing again what is damaged or missing");
+  replay.add_flag("--fresh", arguments.fresh, "Do every step, instead of resuming a run that ended early");
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
   add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
   add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");

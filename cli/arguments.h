@@ -39,6 +39,8 @@ struct Arguments {
   bool float_frames = false;          // render, replay
   std::optional<double> verify_percent;
   bool baseline = false;    // replay
+  bool strict = false;      // replay: no cache with damage, even such as can be made good
+  bool fresh = false;       // replay: no frame of an earlier run is kept
   bool print_look = false;  // inspect
   std::string scene;        // inspect, replay, check
 };

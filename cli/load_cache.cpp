@@ -1,5 +1,7 @@
 #include "load_cache.h"
 
+#include "engine/cached_image.h"
+
 namespace relook {
 
 ExitCode exit_code(CacheFault fault) {
@@ -31,6 +33,16 @@ CacheContent load_cache(const std::string& cache) {
   CacheContent content;
   require_sound(read_cache(cache, content), cache);
   return content;
+}
+
+MendedCache load_mended_cache(const std::string& cache) {
+  MendedCache mended;
+  CacheLosses losses;
+  require_sound(read_cache(cache, mended.content, &losses), cache);
+  for (const CacheAnswer& fault : losses.faults) mended.damage.push_back(fault.file + ": " + fault.detail);
+  require_sound(make_good(mended.content, losses), cache);
+  for (const std::size_t tile : losses.tiles) mended.ray_trees_rebuilt += mended.content.trees[tile].paths.size();
+  return mended;
 }
 
 }  // namespace relook

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <set>
+#include <span>
 
 #include "base/parallel.h"
 #include "edit/apply.h"
@@ -10,6 +11,7 @@
 #include "engine/render.h"
 #include "load_cache.h"
 #include "load_scene.h"
+#include "resume.h"
 #include "run_folder.h"
 #include "verbs.h"
 
@@ -24,11 +26,19 @@ RegionOptions region_options(const StructureOptions& structures) {
   return {structures.groups, structures.tunnels, structures.color_trees_percent / 100, structures.atoms};
 }
 
+/// What a report says of the cache.
+struct CacheFacts {
+  std::string scene_hash;
+  CacheSizes sizes;
+  std::vector<std::string> damage;
+  std::uint64_t ray_trees_rebuilt = 0;
+};
+
 /// Replays one journal into one run folder.
 class JournalRun {
  public:
   JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
-             std::string scene_hash, CacheSizes cache, const std::filesystem::path& folder);
+             const CacheFacts& cache, const std::filesystem::path& folder);
 
   /// Writes the report at the end of the run, or when a signal ends it; an error leaves none. Returns the number of
   /// pixels that --verify found different.
@@ -37,6 +47,7 @@ class JournalRun {
 
  private:
   void run_steps();
+  void resume();
   void base_step();
   void journal_step(const JournalStep& step);
   template <class Work>
@@ -52,19 +63,21 @@ class JournalRun {
   Replayer replayer_;
   RunFolder folder_;
   RunReport report_;
-  std::uint64_t pixels_different_ = 0;
+  std::uint64_t pixels_different_ = 0, ray_trees_rebuilt_ = 0;
+  std::size_t steps_done_ = 0;  // of the journal
 };
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
-                       std::string scene_hash, CacheSizes cache, const std::filesystem::path& folder)
+                       const CacheFacts& cache, const std::filesystem::path& folder)
     : arguments_(arguments),
       console_(console),
       journal_(journal),
       replayer_(std::move(*restored.state), std::move(restored.image), region_options(arguments.structures)),
       folder_(folder, replayer_.image().frame.width, replayer_.image().frame.height,
-              arguments.float_frames ? PixelFormat::float32 : PixelFormat::half) {
+              arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, run_hash(arguments, journal),
+              arguments.fresh) {
   report_.scene = replayer_.state().document().file;
-  report_.scene_hash = std::move(scene_hash);
+  report_.scene_hash = cache.scene_hash;
   report_.journal = journal.file;
   report_.journal_hash = journal.hash;
   report_.camera = replayer_.state().scene().camera;
@@ -73,7 +86,9 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.float_frames = arguments.float_frames;
   report_.verify_percent = arguments.verify_percent;
   report_.threads = thread_count();
-  report_.cache = std::move(cache);
+  report_.cache = cache.sizes;
+  report_.cache_damage = cache.damage;
+  ray_trees_rebuilt_ = cache.ray_trees_rebuilt;
 }
 
 std::uint64_t JournalRun::run() {
@@ -89,8 +104,28 @@ std::uint64_t JournalRun::run() {
 }
 
 void JournalRun::run_steps() {
-  base_step();
-  for (const JournalStep& step : journal_.steps) journal_step(step);
+  if (folder_.kept().empty())
+    base_step();
+  else
+    resume();
+  for (const JournalStep& step : std::span(journal_.steps).subspan(steps_done_)) journal_step(step);
+}
+
+/// Takes over what is in the folder already, and goes where that left off.
+void JournalRun::resume() {
+  const auto start = std::chrono::steady_clock::now();
+  report_.resumed = folder_.kept();
+  for (const Json& entry : report_.resumed)
+    if (entry.at("verify").is_object()) pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
+  steps_done_ = std::min(report_.resumed.back().at("step").get<std::size_t>(), journal_.steps.size());
+  for (const Edit& edit : edits_to(journal_, steps_done_)) {
+    console_.check_interrupt();
+    (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
+  }
+  if (arguments_.baseline || arguments_.verify_percent) full_render();
+  report_.resume_seconds = seconds_since(start);
+  console_.line("resumed after step " + std::to_string(steps_done_) + ": " + std::to_string(report_.resumed.size()) +
+                " finished frames kept");
 }
 
 void JournalRun::base_step() {
@@ -98,6 +133,7 @@ void JournalRun::base_step() {
   entry.name = "base";
   const Frame& frame = replayer_.image().frame;
   entry.counters.samples_total = std::uint64_t{frame.width} * frame.height * report_.view.samples;
+  entry.counters.ray_trees_rebuilt = ray_trees_rebuilt_;
   if (arguments_.baseline && !arguments_.verify_percent) full_render();
   finish(std::move(entry), StepResult(), std::chrono::steady_clock::now());
 }
@@ -121,7 +157,7 @@ ChangeClass JournalRun::frame(StepReport entry, const Work& work) {
 
 void JournalRun::journal_step(const JournalStep& step) {
   StepReport entry;
-  entry.step = report_.steps.back().step + 1;
+  entry.step = static_cast<std::uint32_t>(++steps_done_);
   entry.name = step.name;
   const std::filesystem::path folder = journal_.path.parent_path();
   const auto edit = [&](const Edit& patch) { return replayer_.step(patch, journal_.file, folder); };
@@ -158,6 +194,7 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   entry.peak_rss_bytes = peak_rss_bytes();
   report_.steps.push_back(std::move(entry));
   if (arguments_.verify_percent) verify(report_.steps.back());
+  folder_.note_step(report_.steps.back());
   print(report_.steps.back());
 }
 
@@ -171,7 +208,7 @@ Frame JournalRun::full_render() {
 }
 
 void JournalRun::verify(StepReport& entry) {
-  const std::size_t round = report_.steps.size() - 1;
+  const std::size_t round = report_.resumed.size() + report_.steps.size() - 1;
   const FrameDifference difference =
       compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent, round);
   entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
@@ -234,15 +271,17 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     if (has_several) folders.back() /= journal.name;
     RunFolder::refuse_foreign(folders.back());
   }
-  CacheContent content = load_cache(cache);
+  MendedCache mended = arguments.strict ? MendedCache{load_cache(cache), {}, 0} : load_mended_cache(cache);
+  for (std::string& damage : mended.damage) damage = cache + ": " + damage + "; traced again";
+  console.warn(mended.damage);
+  CacheContent& content = mended.content;
   if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != content.scene_hash)
     require_sound({CacheFault::other_scene, "", ""}, cache);
   if (arguments.shadow_bits.value_or(content.shadow_bits) != content.shadow_bits)
     throw Error(ExitCode::cache_mismatch, cache, "",
                 "the cache holds shadow counters of " + std::to_string(content.shadow_bits) +
                     " bits; preprocess again with --shadow-bits");
-  const std::string scene_hash = content.scene_hash;
-  const CacheSizes sizes = cache_sizes(cache);
+  const CacheFacts facts{content.scene_hash, cache_sizes(cache), mended.damage, mended.ray_trees_rebuilt};
 
   std::uint64_t pixels_different = 0;
   RestoredImage restored = restore(has_several ? content : std::move(content), cache);
@@ -250,7 +289,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
     if (i > 0) restored = restore(i + 1 < journals.size() ? content : std::move(content), cache);
-    JournalRun run(arguments, console, journals[i], std::move(restored), scene_hash, sizes, folders[i]);
+    JournalRun run(arguments, console, journals[i], std::move(restored), facts, folders[i]);
     pixels_different += run.run();
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
   }

@@ -39,12 +39,6 @@ class Descriptor {
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-[[noreturn]] void fail_to_write(const std::filesystem::path& path, std::string_view action, int error) {
-  const std::string what = "cannot " + std::string(action) + ": " + reason(error);
-  if (error == ENOSPC || error == EDQUOT || error == EFBIG || error == ENOMEM) throw ResourceError(path.string(), what);
-  throw IoError(path.string(), what);
-}
-
 std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
@@ -150,6 +144,17 @@ std::filesystem::path contained_path(const std::filesystem::path& folder, std::s
   if (error) throw InputError(file, where, "cannot open " + quoted + ": " + error.message());
   if (!lies_below(target, base)) throw InputError(file, where, quoted + " leads out of its folder");
   return target;
+}
+
+void fail_to_write(const std::filesystem::path& path, std::string_view action, int error) {
+  const std::string what = "cannot " + std::string(action) + ": " + reason(error);
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG || error == ENOMEM) throw ResourceError(path.string(), what);
+  throw IoError(path.string(), what);
+}
+
+void append_synced(int descriptor, BytesView bytes, const std::filesystem::path& path) {
+  write_all(descriptor, bytes, path);
+  if (::fsync(descriptor) != 0) fail_to_write(path, "write to disk", errno);
 }
 
 void write_file(const std::filesystem::path& path, BytesView bytes) {

@@ -37,6 +37,11 @@ inline constexpr std::size_t kLargestInputBytes = std::size_t{8} << 30;
 void write_file(const std::filesystem::path& path, BytesView bytes);
 inline void write_file(const std::filesystem::path& path, std::string_view text) { write_file(path, bytes_of(text)); }
 
+/// Throws ResourceError for a lack of space or memory, else IoError: "PATH: cannot ACTION: reason of `error`".
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, std::string_view action, int error);
+/// Writes at the place of an open descriptor and syncs it; `path` is for messages. Throws IoError, ResourceError.
+void append_synced(int descriptor, BytesView bytes, const std::filesystem::path& path);
+
 /// Syncs a folder's entries to disk. Throws IoError.
 void sync_folder(const std::filesystem::path& folder);
 /// Creates a folder and its parents. Throws IoError or ResourceError.

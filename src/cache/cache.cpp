@@ -83,6 +83,14 @@ struct Reading {
   CacheContent content;
   std::shared_ptr<Assets> assets = std::make_shared<Assets>();
   std::vector<std::size_t> hits_of_path;
+  bool uses_trees = false;  // otherwise of trees nothing but the hash of the file is checked
+};
+
+/// What is wrong with one file.
+struct Finding {
+  CacheAnswer answer;
+  PartFile part;
+  bool is_lost = false;  // missing, or not the bytes that were written
 };
 
 void decode(const PartFile& part, BytesView bytes, Reading& reading) {
@@ -100,7 +108,8 @@ void decode(const PartFile& part, BytesView bytes, Reading& reading) {
     case Part::paths:
       return decode_paths(bytes, identity, content);
     case Part::trees:
-      return decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
+      if (reading.uses_trees) decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
+      return;
   }
 }
 
@@ -113,13 +122,16 @@ const CacheFile& find_file(const Manifest& manifest, const PartFile& part) {
 }
 
 /// Reads, verifies and decodes one file.
-CacheAnswer read_part(const PartFile& part, Reading& reading) {
-  CacheAnswer answer{CacheFault::none, stem(part), ""};
+Finding read_part(const PartFile& part, Reading& reading) {
+  Finding finding{{CacheFault::none, stem(part), ""}, part};
+  CacheAnswer& answer = finding.answer;
   try {
     const CacheFile& file = find_file(reading.manifest, part);
     answer.file = file.name;
+    finding.is_lost = true;
     const Bytes bytes = load_file(reading.path, file);
     const bool is_sound = hash128(bytes) == file.hash;
+    finding.is_lost = !is_sound;
     try {
       decode(part, bytes, reading);
     } catch (const CacheDamage& damage) {
@@ -131,29 +143,57 @@ CacheAnswer read_part(const PartFile& part, Reading& reading) {
     answer.fault = damage.fault;
     answer.detail = damage.what();
   }
-  return answer;
+  return finding;
 }
 
-/// The answers of parts [first, last), read in parallel, in order.
-std::vector<CacheAnswer> read_parts(std::span<const PartFile> parts, Reading& reading) {
-  std::vector<CacheAnswer> answers(parts.size());
-  parallel_for(parts.size(), [&](std::size_t i) { answers[i] = read_part(parts[i], reading); });
-  return answers;
+/// The findings of some parts, read in parallel, in order.
+std::vector<Finding> read_parts(std::span<const PartFile> parts, Reading& reading) {
+  std::vector<Finding> findings(parts.size());
+  parallel_for(parts.size(), [&](std::size_t i) { findings[i] = read_part(parts[i], reading); });
+  return findings;
 }
 
-bool is_sound(const std::vector<CacheAnswer>& answers) {
-  return std::all_of(answers.begin(), answers.end(),
-                     [](const CacheAnswer& answer) { return answer.fault == CacheFault::none; });
+bool is_fault(const Finding& finding) { return finding.answer.fault != CacheFault::none; }
+
+/// Can be made good from the rest of the cache.
+bool is_loss(const Finding& finding) {
+  const bool follows_from_scene =
+      finding.part.part == Part::frame || finding.part.part == Part::paths || finding.part.part == Part::trees;
+  return finding.is_lost && follows_from_scene;
 }
 
-/// Reads everything that can be read; the answers that are not `none`, in the order of the files.
-std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Reading& reading) {
+/// What is to be done about losses, and nothing left in `content` of what is lost.
+CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& content) {
+  CacheLosses losses;
+  std::set<std::size_t> tiles;
+  const std::size_t all = cache_tile_count(content.camera);
+  for (const Finding& finding : findings) {
+    losses.faults.push_back(finding.answer);
+    const bool is_group = finding.part.part == Part::trees;
+    const std::size_t first = is_group ? finding.part.group * kTilesPerGroup : 0;
+    const std::size_t last = is_group ? std::min(first + kTilesPerGroup, all) : all;
+    for (std::size_t tile = first; tile < last; ++tile) tiles.insert(tile);
+    if (finding.part.part == Part::paths) content.paths = PathTable();
+  }
+  content.frame.resize(std::size_t{content.camera.width} * content.camera.height);
+  content.trees.resize(all);
+  content.sample_colors.resize(all);
+  for (const std::size_t tile : tiles) {
+    content.trees[tile] = TileTrees();
+    content.sample_colors[tile].clear();
+  }
+  losses.tiles.assign(tiles.begin(), tiles.end());
+  return losses;
+}
+
+/// Reads everything that can be read; what is wrong with it, in the order of the files.
+std::vector<Finding> read_everything(const std::filesystem::path& path, Reading& reading) {
   reading.path = path;
   try {
     reading.manifest = load_manifest(path);
   } catch (const CacheDamage& damage) {
     const bool has_manifest = damage.fault != CacheFault::missing && damage.what()[0] != '\0';
-    return {{damage.fault, has_manifest ? std::string(kManifestName) : "", damage.what()}};
+    return {{{damage.fault, has_manifest ? std::string(kManifestName) : "", damage.what()}, {}}};
   }
   const Manifest& manifest = reading.manifest;
   CacheContent& content = reading.content;
@@ -166,16 +206,17 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
   content.scene_hash = manifest.identity.scene_hash;
   content.pyramids = std::make_shared<PyramidStore>();
   content.document.assets = reading.assets;
-  std::vector<CacheAnswer> findings;
+  std::vector<Finding> findings;
   if (options_hash(content) != manifest.identity.options_hash)
-    findings.push_back({CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"});
+    findings.push_back({{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
 
   const std::vector<PartFile> parts = parts_of(content.camera);
   // Trees are checked against the paths, and take over pixels of the frame; everything else can be read beside them.
   constexpr std::size_t kPaths = 4, kFrame = 3, kFirstTrees = 5;
   require(parts[kPaths].part == Part::paths && parts[kFrame].part == Part::frame, "parts have their places");
-  std::vector<CacheAnswer> answers = read_parts(std::span(parts).subspan(kFrame, 2), reading);
-  if (is_sound(answers)) {
+  std::vector<Finding> all = read_parts(std::span(parts).subspan(kFrame, 2), reading);
+  reading.uses_trees = std::ranges::none_of(all, is_fault);
+  if (reading.uses_trees) {
     const PathLayout layout{content.lights, content.shadow_bits};
     for (std::size_t i = 0; i < content.paths.size(); ++i)
       reading.hits_of_path.push_back(hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
@@ -185,12 +226,11 @@ std::vector<CacheAnswer> read_everything(const std::filesystem::path& path, Read
   }
   // The look document takes longest and comes first.
   std::vector<PartFile> rest(parts.begin(), parts.begin() + kFrame);
-  if (is_sound(answers)) rest.insert(rest.end(), parts.begin() + kFirstTrees, parts.end());
-  const std::vector<CacheAnswer> others = read_parts(rest, reading);
-  answers.insert(answers.begin(), others.begin(), others.begin() + kFrame);
-  answers.insert(answers.end(), others.begin() + kFrame, others.end());
-  std::copy_if(answers.begin(), answers.end(), std::back_inserter(findings),
-               [](const CacheAnswer& answer) { return answer.fault != CacheFault::none; });
+  rest.insert(rest.end(), parts.begin() + kFirstTrees, parts.end());
+  const std::vector<Finding> others = read_parts(rest, reading);
+  all.insert(all.begin(), others.begin(), others.begin() + kFrame);
+  all.insert(all.end(), others.begin() + kFrame, others.end());
+  std::ranges::copy_if(all, std::back_inserter(findings), is_fault);
   return findings;
 }
 
@@ -262,10 +302,13 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
   folder.publish();
 }
 
-CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content) {
+CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content, CacheLosses* losses) {
   Reading reading;
-  const std::vector<CacheAnswer> findings = read_everything(path, reading);
-  if (!findings.empty()) return findings.front();
+  const std::vector<Finding> findings = read_everything(path, reading);
+  const auto fault = std::ranges::find_if(
+      findings, [&](const Finding& finding) { return losses == nullptr || !is_loss(finding); });
+  if (fault != findings.end()) return fault->answer;
+  if (losses != nullptr && !findings.empty()) *losses = take_losses(findings, reading.content);
   content = std::move(reading.content);
   return {};
 }
@@ -273,9 +316,10 @@ CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content)
 CacheReport check_cache(const std::filesystem::path& path) {
   Reading reading;
   CacheReport report;
-  const std::vector<CacheAnswer> faults = read_everything(path, reading);
-  if (!faults.empty()) report.worst = faults.front();
-  for (const CacheAnswer& fault : faults) {
+  const std::vector<Finding> faults = read_everything(path, reading);
+  if (!faults.empty()) report.worst = faults.front().answer;
+  for (const Finding& finding : faults) {
+    const CacheAnswer& fault = finding.answer;
     std::string line = fault.file;
     if (!line.empty()) line += ": ";
     report.findings.push_back(line + (fault.detail.empty() ? std::string(sentence(fault.fault)) : fault.detail));

@@ -51,8 +51,18 @@ void require_writable(const std::filesystem::path& path);
 /// IoError, ResourceError; on failure nothing remains.
 void write_cache(const std::filesystem::path& path, const CacheContent& content);
 
-/// Reads and verifies every hash and every index. On any fault `content` is untouched.
-[[nodiscard]] CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content);
+/// Damage that can be made good, because what is lost follows from the scene: frame, ray paths, ray trees.
+struct CacheLosses {
+  std::vector<CacheAnswer> faults;  // one a file, in the order of the files
+  std::vector<std::size_t> tiles;   // to be traced again, increasing; all of them when the paths are lost
+  [[nodiscard]] bool empty() const { return faults.empty(); }
+};
+
+/// Reads and verifies every hash and every index. On any fault `content` is untouched; with `losses`, files that are
+/// missing or do not have their hash are none if they can be made good: then the tiles of `losses` have no trees and no
+/// colours, and a lost path table is empty.
+[[nodiscard]] CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content,
+                                     CacheLosses* losses = nullptr);
 
 /// Every byte and every invariant; one line per finding, empty if the cache is sound. Goes on after the first fault.
 struct CacheReport {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "engine/render.h"
 #include "trace/path_cursor.h"
 
 namespace relook {
@@ -71,22 +72,61 @@ std::string broken_hits(const Scene& scene, const Image& image) {
   return "";
 }
 
-CacheAnswer restore_image(CacheContent content, RestoredImage& restored) {
-  const Camera camera = content.camera;
-  std::unique_ptr<SceneState> state;
+namespace {
+
+/// Compiles the look document of `content`, which is moved from.
+CacheAnswer compile(CacheContent& content, std::unique_ptr<SceneState>& state) {
   try {
-    state = std::make_unique<SceneState>(std::move(content.document), camera, content.pyramids);
+    state = std::make_unique<SceneState>(std::move(content.document), content.camera, content.pyramids);
   } catch (const InputError& error) {
     return {CacheFault::damaged, "look.json", error.what()};
   }
   if (state->scene().objects.size() != content.objects || state->scene().light_order.size() != content.lights)
     return {CacheFault::damaged, "look.json", "the look document does not have the objects and lights of the paths"};
+  return {};
+}
+
+Image take_image(CacheContent& content) {
   Image image;
   image.view = {content.samples, content.max_depth, content.shadow_bits};
-  image.frame = {camera.width, camera.height, std::move(content.frame)};
+  image.frame = {content.camera.width, content.camera.height, std::move(content.frame)};
   image.paths = std::move(content.paths);
   image.trees = std::move(content.trees);
   image.sample_colors = std::move(content.sample_colors);
+  return image;
+}
+
+}  // namespace
+
+CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
+  if (losses.empty()) return {};
+  CacheContent scene_part;
+  scene_part.document = content.document;
+  scene_part.camera = content.camera;
+  scene_part.pyramids = content.pyramids;
+  scene_part.objects = content.objects;
+  scene_part.lights = content.lights;
+  std::unique_ptr<SceneState> state;
+  const CacheAnswer answer = compile(scene_part, state);
+  if (answer.fault != CacheFault::none) return answer;
+  Image image = take_image(content);
+  const std::size_t known_paths = image.paths.size();
+  RenderStats stats;
+  rebuild_tiles(state->scene(), image, losses.tiles, stats);
+  if (known_paths > 0 && image.paths.size() != known_paths)
+    return {CacheFault::damaged, "paths", "the table lacks paths of the scene"};
+  content.frame = std::move(image.frame.pixels);
+  content.paths = std::move(image.paths);
+  content.trees = std::move(image.trees);
+  content.sample_colors = std::move(image.sample_colors);
+  return {};
+}
+
+CacheAnswer restore_image(CacheContent content, RestoredImage& restored) {
+  std::unique_ptr<SceneState> state;
+  CacheAnswer answer = compile(content, state);
+  if (answer.fault != CacheFault::none) return answer;
+  Image image = take_image(content);
   std::string broken = broken_hits(state->scene(), image);
   if (!broken.empty()) return {CacheFault::damaged, "trees", std::move(broken)};
   restored = {std::move(state), std::move(image)};

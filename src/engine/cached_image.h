@@ -16,6 +16,10 @@ namespace relook {
 /// exist.
 [[nodiscard]] std::string broken_hits(const Scene& scene, const Image& image);
 
+/// Traces the tiles of `losses` again, so that `content` is as it was written, byte for byte. Returns what keeps the
+/// scene from being compiled.
+[[nodiscard]] CacheAnswer make_good(CacheContent& content, const CacheLosses& losses);
+
 struct RestoredImage {
   std::unique_ptr<SceneState> state;
   Image image;

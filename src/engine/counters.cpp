@@ -15,6 +15,7 @@ Counters& Counters::operator+=(const Counters& other) {
   shadow_updates += other.shadow_updates;
   object_rays += other.object_rays;
   color_trees_evaluated += other.color_trees_evaluated;
+  ray_trees_rebuilt += other.ray_trees_rebuilt;
   return *this;
 }
 

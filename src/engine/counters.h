@@ -16,6 +16,7 @@ struct Counters {
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree
   std::uint64_t color_trees_evaluated = 0;
+  std::uint64_t ray_trees_rebuilt = 0;    // whose tile was damaged or missing in the cache
   std::uint64_t color_trees_evicted = 0;  // compressed ones, dropped to keep within their share
 
   Counters& operator+=(const Counters& other);

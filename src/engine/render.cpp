@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -82,8 +83,9 @@ void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint
   }
 }
 
-/// Renders every tile; `keep`: also the paths, trees and sample colours.
-void render_tiles(const Scene& scene, Image& image, bool keep, RenderStats& stats, const Progress& progress) {
+/// Renders some tiles; `keep`: also the paths, trees and sample colours.
+void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t> tiles, bool keep, RenderStats& stats,
+                  const Progress& progress) {
   const auto start = Clock::now();
   const RayScene ray_scene(scene);
   const std::uint32_t shadow_bits = keep ? image.view.shadow_bits : 0;  // colours do not depend on counters
@@ -92,55 +94,66 @@ void render_tiles(const Scene& scene, Image& image, bool keep, RenderStats& stat
   stats.build_seconds = seconds_since(start);
 
   const auto render_start = Clock::now();
-  const std::uint32_t width = scene.camera.width, height = scene.camera.height;
-  const std::size_t tiles = tile_count(width, height);
-  image.frame = {width, height, std::vector<Rgba>(std::size_t{width} * height)};
   const GrowScene grow{ray_scene, &level, image.view.max_depth, shadow_bits};
   ProgramTable programs;
-  std::vector<GrowCounters> counters(tiles);
-  std::vector<TileRecord> records(keep ? tiles : 0);
-  if (keep) image.sample_colors.resize(tiles);
+  std::vector<GrowCounters> counters(tiles.size());
+  std::vector<TileRecord> records(keep ? tiles.size() : 0);
   Pool<TileRenderer> renderers;
   std::atomic<std::size_t> done = 0;
   std::mutex progress_mutex;
-  parallel_for(tiles, [&](std::size_t tile) {
-    const TileRect rect = tile_rect(tile, width, height);
+  parallel_for(tiles.size(), [&](std::size_t i) {
+    const TileRect rect = tile_rect(tiles[i], image.frame.width, image.frame.height);
     std::vector<Rgba> colors;
     const auto renderer = renderers.take([&] { return std::make_unique<TileRenderer>(grow, image.view, programs); });
-    renderer->render(rect, colors, keep ? &records[tile] : nullptr, counters[tile]);
+    renderer->render(rect, colors, keep ? &records[i] : nullptr, counters[i]);
     set_pixels(rect, colors, image.view.samples, image.frame);
-    if (keep) image.sample_colors[tile] = std::move(colors);
+    if (keep) image.sample_colors[tiles[i]] = std::move(colors);
     const std::size_t finished = ++done;
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
-    progress(static_cast<double>(finished) / static_cast<double>(tiles));
+    progress(static_cast<double>(finished) / static_cast<double>(tiles.size()));
   });
-  if (keep) image.trees.resize(tiles);
-  for (std::size_t tile = 0; keep && tile < tiles; ++tile) merge(records[tile], image.paths, image.trees[tile]);
+  for (std::size_t i = 0; keep && i < tiles.size(); ++i) merge(records[i], image.paths, image.trees[tiles[i]]);
   for (const GrowCounters& c : counters) {
     stats.counters.ray_updates += c.ray_updates;
     stats.counters.shadow_updates += c.shadow_updates;
   }
-  const std::uint64_t samples = std::uint64_t{width} * height * image.view.samples;
+  std::uint64_t samples = 0;
+  for (const std::size_t tile : tiles)
+    samples += sample_count(tile_rect(tile, image.frame.width, image.frame.height), image.view);
   stats.counters.samples_total = stats.counters.samples_affected = samples;
   stats.counters.color_trees_evaluated = samples;
   stats.render_seconds = seconds_since(render_start);
 }
 
+/// Renders every tile of a new image.
+Image render_image(const Scene& scene, const ViewOptions& view, bool keep, RenderStats& stats,
+                   const Progress& progress) {
+  const std::uint32_t width = scene.camera.width, height = scene.camera.height;
+  Image image;
+  image.view = view;
+  image.frame = {width, height, std::vector<Rgba>(std::size_t{width} * height)};
+  std::vector<std::size_t> tiles(tile_count(width, height));
+  std::iota(tiles.begin(), tiles.end(), std::size_t{0});
+  image.trees.resize(keep ? tiles.size() : 0);
+  image.sample_colors.resize(keep ? tiles.size() : 0);
+  render_tiles(scene, image, tiles, keep, stats, progress);
+  return image;
+}
+
 }  // namespace
 
 Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress) {
-  Image image;
-  image.view = view;
-  render_tiles(scene, image, false, stats, progress);
-  return std::move(image.frame);
+  return std::move(render_image(scene, view, false, stats, progress).frame);
 }
 
 Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress) {
-  Image image;
-  image.view = view;
-  render_tiles(scene, image, true, stats, progress);
-  return image;
+  return render_image(scene, view, true, stats, progress);
+}
+
+void rebuild_tiles(const Scene& scene, Image& image, std::span<const std::size_t> tiles, RenderStats& stats,
+                   const Progress& progress) {
+  render_tiles(scene, image, tiles, true, stats, progress);
 }
 
 }  // namespace relook

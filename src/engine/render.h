@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <span>
 
 #include "engine/counters.h"
 #include "engine/image.h"
@@ -24,5 +25,10 @@ struct RenderStats {
 /// The same frame, bit for bit, with paths, ray trees and sample colours kept. Ids do not depend on the thread count.
 [[nodiscard]] Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats,
                                const Progress& progress = {});
+/// Traces some tiles of `image` (increasing) again: their paths, ray trees, sample colours and pixels. With the scene
+/// that the image was made from it is afterwards as preprocess() made it, provided that its path table is that image's,
+/// or empty and `tiles` are all.
+void rebuild_tiles(const Scene& scene, Image& image, std::span<const std::size_t> tiles, RenderStats& stats,
+                   const Progress& progress = {});
 
 }  // namespace relook

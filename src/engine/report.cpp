@@ -47,9 +47,12 @@ Json resident_json(const Resident& resident) {
           {"total", resident.total}};
 }
 
-/// Colour trees alone are ever dropped, and none is read back.
-Json residency_json(std::uint64_t color_trees) {
-  return {{"ray_trees", 0}, {"color_trees", color_trees}, {"tunnels", 0}, {"total", color_trees}};
+/// Numbers of trees. Colour trees alone are ever dropped, and none is read back.
+Json residency_json(std::uint64_t ray_trees, std::uint64_t color_trees) {
+  return {{"ray_trees", ray_trees},
+          {"color_trees", color_trees},
+          {"tunnels", 0},
+          {"total", ray_trees + color_trees}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
@@ -58,6 +61,8 @@ Json verify_json(const std::optional<VerifyResult>& verify) {
 }
 
 Json regions_json(const RegionCounters& regions) { return {{"visited", regions.visited}, {"culled", regions.culled}}; }
+
+}  // namespace
 
 Json step_json(const StepReport& step) {
   const Counters& counters = step.counters;
@@ -87,10 +92,11 @@ Json step_json(const StepReport& step) {
       {"color_trees_evaluated", counters.color_trees_evaluated},
       {"seconds", seconds_json(step.seconds)},
       {"resident", resident_json(step.resident)},
-      {"evicted", residency_json(counters.color_trees_evicted)},
-      {"rebuilt", residency_json(0)},
-      {"reloaded", residency_json(0)},
+      {"evicted", residency_json(0, counters.color_trees_evicted)},
+      {"rebuilt", residency_json(counters.ray_trees_rebuilt, 0)},
+      {"reloaded", residency_json(0, 0)},
       {"peak_rss", step.peak_rss_bytes},
+      {"resumed", false},
       {"verify", verify_json(step.verify)}};
 }
 
@@ -107,8 +113,6 @@ Json options_json(const RunReport& report) {
           {"float", report.float_frames},
           {"verify", or_null(report.verify_percent)}};
 }
-
-}  // namespace
 
 std::string_view program_version() { return RELOOK_VERSION; }
 
@@ -143,6 +147,11 @@ std::uint64_t peak_rss_bytes() {
 
 Json report_json(const RunReport& report) {
   Json steps = Json::array(), frames = Json::object();
+  for (const Json& entry : report.resumed) {
+    steps.push_back(entry);
+    steps.back()["resumed"] = true;
+    frames[entry.at("frame").get<std::string>()] = entry.at("frame_hash");
+  }
   for (const StepReport& step : report.steps) {
     steps.push_back(step_json(step));
     frames[step.frame] = step.frame_hash;
@@ -161,8 +170,10 @@ Json report_json(const RunReport& report) {
           {"machine", {{"threads", report.threads}, {"cpu", cpu_model()}}},
           {"full_render_seconds", or_null(report.full_render_seconds)},
           {"cache_bytes", std::move(cache_bytes)},
+          {"cache_damage", report.cache_damage},
           {"frames", std::move(frames)},
           {"interrupted", report.interrupted},
+          {"resumed", {{"frames", report.resumed.size()}, {"seconds", report.resume_seconds}}},
           {"steps", std::move(steps)}};
 }
 

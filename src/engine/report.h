@@ -65,11 +65,17 @@ struct RunReport {
   std::size_t threads = 0;
   std::optional<double> full_render_seconds;
   CacheSizes cache;
+  std::vector<std::string> cache_damage;  // sentences: what was damaged or missing and traced again
   bool interrupted = false;  // ended by a signal: later steps are missing
+  std::vector<Json> resumed;  // step_json() of frames that an earlier run of the same inputs has finished; before `steps`
+  double resume_seconds = 0;  // to get to where that run was
   std::vector<StepReport> steps;
 };
 
 [[nodiscard]] Json report_json(const RunReport& report);
+/// Its entry of `steps`, and its `options`.
+[[nodiscard]] Json step_json(const StepReport& step);
+[[nodiscard]] Json options_json(const RunReport& report);
 
 /// The class of several edits together, by the rule of classify(): that of a drag's release.
 [[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);

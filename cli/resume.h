@@ -1,0 +1,21 @@
+// What a replay can take over from a run of the same inputs that ended early, and how it gets to where that run was.
+// A run that names further files is never the same: they may have changed.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "edit/journal.h"
+
+namespace relook {
+
+/// XXH3-128 of all that decides the entries and files of a run: cache (with the build that wrote it), journal, options;
+/// none for a journal that names files of its own. Throws Error when the cache has no readable manifest.
+[[nodiscard]] std::optional<std::string> run_hash(const Arguments& arguments, const Journal& journal);
+
+/// Edits that lead from the cache's state to that after the first `steps` steps: neighbours that only replace values
+/// inside of materials, nodes and so on are one edit, since no order of things depends on them.
+[[nodiscard]] std::vector<Edit> edits_to(const Journal& journal, std::size_t steps);
+
+}  // namespace relook
