@@ -38,7 +38,8 @@ bool take_line(std::string_view& text, Json& value) {
 
 /// Whether the open file is still the one under its name.
 bool is_current(int descriptor, const std::filesystem::path& path) {
-  struct stat opened {}, named {};
+  struct stat opened {
+  }, named{};
   return fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
          opened.st_dev == named.st_dev;
 }
@@ -73,9 +74,11 @@ std::vector<Json> ProgressFile::entries(const std::string& run_hash) const {
 void ProgressFile::restart(const std::string& run_hash, const std::vector<Json>& entries) {
   std::string text = line_of(header(run_hash));
   for (const Json& entry : entries) text += line_of(entry);
-  if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0)
+  const Bytes before = read_file(path_);
+  const std::size_t kept = text_of(before).starts_with(text) ? text.size() : 0;  // what holds is never written again
+  if (::ftruncate(descriptor_, static_cast<off_t>(kept)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0)
     fail_to_write(path_, "write", errno);
-  append_synced(descriptor_, bytes_of(text), path_);
+  append_synced(descriptor_, bytes_of(std::string_view(text).substr(kept)), path_);
 }
 
 void ProgressFile::append(const Json& entry) { append_synced(descriptor_, bytes_of(line_of(entry)), path_); }

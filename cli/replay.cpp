@@ -116,7 +116,8 @@ void JournalRun::resume() {
   const auto start = std::chrono::steady_clock::now();
   report_.resumed = folder_.kept();
   for (const Json& entry : report_.resumed)
-    if (entry.at("verify").is_object()) pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
+    if (entry.at("verify").is_object())
+      pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
   steps_done_ = std::min(report_.resumed.back().at("step").get<std::size_t>(), journal_.steps.size());
   for (const Edit& edit : edits_to(journal_, steps_done_)) {
     console_.check_interrupt();

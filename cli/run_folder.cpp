@@ -28,6 +28,12 @@ std::filesystem::path made(std::filesystem::path folder) {
   return folder;
 }
 
+/// A temporary file of write_file() that a killed run has left.
+bool is_unfinished(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with(".report.") && name.ends_with(".tmp");
+}
+
 /// The last frame of its step: not one of a drag or a wedge.
 bool ends_step(const Json& note) {
   const Json& entry = note.at("entry");
@@ -95,6 +101,9 @@ void RunFolder::remove_all_but_kept() {
   }
   remove_entry(path_ / "report.json");
   remove_entry(path_ / "report.html");
+  std::error_code ignored;
+  for (const auto& file : std::filesystem::directory_iterator(path_, ignored))
+    if (is_unfinished(file.path())) remove_entry(file.path());
   for (const std::string_view folder : kFrameFolders) {
     std::error_code error;
     if (kept.empty()) {
@@ -145,8 +154,7 @@ void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer,
   const auto write = [&](const char* kind, const auto& draw) {
     Frame frame = replayer.image().frame;
     for (std::size_t tile = 0; tile < tile_count(frame.width, frame.height); ++tile) draw(frame, tile);
-    const std::string name =
-        "overlays/" + std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png";
+    const std::string name = "overlays/" + std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png";
     const Bytes bytes = encode_png(frame);
     write_file(path_ / name, bytes);
     overlay_hashes_[name] = hash128(bytes);

@@ -23,7 +23,8 @@ class RunFolder {
   static void refuse_foreign(const std::filesystem::path& path);
 
   /// Creates the folder, or empties that of an earlier run. `run`: hash of the inputs, see run_hash(); none: nothing is
-  /// noted for a later run. `is_fresh`: nothing of an earlier run is kept. Throws IoError when another run is writing here.
+  /// noted for a later run. `is_fresh`: nothing of an earlier run is kept. Throws IoError when another run is writing
+  /// here.
   RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format,
             const std::optional<std::string>& run, bool is_fresh);
 
@@ -53,7 +54,7 @@ class RunFolder {
   std::filesystem::path path_;
   ProgressFile progress_;
   bool notes_steps_ = false;
-  std::vector<Json> kept_notes_, kept_;  // as in the progress file; their entries
+  std::vector<Json> kept_notes_, kept_;                // as in the progress file; their entries
   std::map<std::string, std::string> overlay_hashes_;  // by file, of those written since the last note
   std::string preview_hash_;                           // of the last frame
   std::optional<Json> finished_;                       // note of the last step, not yet in the progress file

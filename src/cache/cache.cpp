@@ -208,7 +208,8 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
   content.document.assets = reading.assets;
   std::vector<Finding> findings;
   if (options_hash(content) != manifest.identity.options_hash)
-    findings.push_back({{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
+    findings.push_back(
+        {{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
 
   const std::vector<PartFile> parts = parts_of(content.camera);
   // Trees are checked against the paths, and take over pixels of the frame; everything else can be read beside them.
@@ -305,8 +306,8 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
 CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content, CacheLosses* losses) {
   Reading reading;
   const std::vector<Finding> findings = read_everything(path, reading);
-  const auto fault = std::ranges::find_if(
-      findings, [&](const Finding& finding) { return losses == nullptr || !is_loss(finding); });
+  const auto fault =
+      std::ranges::find_if(findings, [&](const Finding& finding) { return losses == nullptr || !is_loss(finding); });
   if (fault != findings.end()) return fault->answer;
   if (losses != nullptr && !findings.empty()) *losses = take_losses(findings, reading.content);
   content = std::move(reading.content);

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <stdio.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -20,6 +21,22 @@ std::filesystem::path without_trailing_slash(const std::filesystem::path& path) 
   return path.has_filename() ? path : path.parent_path();
 }
 
+/// A descriptor of a folder with a lock on it; -1 if there is no such folder or somebody else has the lock. Where
+/// folders cannot be locked: only if `needs_lock` is false.
+int open_locked(const std::filesystem::path& folder, bool needs_lock) {
+  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (file < 0) return -1;
+  const bool is_locked = ::flock(file, LOCK_EX | LOCK_NB) == 0;
+  const bool is_refused = !is_locked && (needs_lock || errno == EWOULDBLOCK);
+  struct stat opened {
+  }, named{};
+  const bool is_there = ::fstat(file, &opened) == 0 && ::lstat(folder.c_str(), &named) == 0 &&
+                        opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+  if (!is_refused && is_there) return file;
+  ::close(file);
+  return -1;
+}
+
 }  // namespace
 
 StagedFolder::StagedFolder(const std::filesystem::path& final_path) : given_(without_trailing_slash(final_path)) {
@@ -28,11 +45,16 @@ StagedFolder::StagedFolder(const std::filesystem::path& final_path) : given_(wit
   final_ = std::filesystem::weakly_canonical(std::filesystem::absolute(given_, ignored), ignored);
   if (final_.empty() || !final_.has_filename()) throw IoError(final_path.string(), "no folder can be written here");
   make_folders(final_.parent_path());
-  const std::string stem =
-      std::string(".").append(final_.filename().string()) + ".relook-" + std::to_string(getpid()) + "-";
+  const std::string start = std::string(".").append(final_.filename().string()) + ".relook-";
+  remove_abandoned(start);
+  const std::string stem = start + std::to_string(getpid()) + "-";
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     staged_ = final_.parent_path() / (stem + std::to_string(attempt));
-    if (mkdir(staged_.c_str(), 0777) == 0) return;
+    if (mkdir(staged_.c_str(), 0777) == 0) {
+      lock_ = open_locked(staged_, false);
+      if (lock_ >= 0) return;
+      continue;  // taken for abandoned by somebody in this moment
+    }
     if (errno == ENOSPC || errno == EDQUOT) throw ResourceError(final_path.string(), std::strerror(errno));
     if (errno != EEXIST) throw IoError(final_path.string(), std::string("cannot be written: ") + std::strerror(errno));
   }
@@ -42,6 +64,20 @@ StagedFolder::StagedFolder(const std::filesystem::path& final_path) : given_(wit
 StagedFolder::~StagedFolder() {
   std::error_code ignored;
   if (!staged_.empty()) std::filesystem::remove_all(staged_, ignored);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void StagedFolder::remove_abandoned(const std::string& start) const {
+  constexpr std::string_view kSetAside = "-old";  // may be the only copy of a cache: see replace_in_two_steps()
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(final_.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || name.ends_with(kSetAside)) continue;
+    const int lock = open_locked(entry.path(), true);
+    if (lock < 0) continue;
+    std::filesystem::remove_all(entry.path(), ignored);
+    ::close(lock);
+  }
 }
 
 void StagedFolder::fill(const std::function<void()>& fill) const {

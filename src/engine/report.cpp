@@ -49,10 +49,7 @@ Json resident_json(const Resident& resident) {
 
 /// Numbers of trees. Colour trees alone are ever dropped, and none is read back.
 Json residency_json(std::uint64_t ray_trees, std::uint64_t color_trees) {
-  return {{"ray_trees", ray_trees},
-          {"color_trees", color_trees},
-          {"tunnels", 0},
-          {"total", ray_trees + color_trees}};
+  return {{"ray_trees", ray_trees}, {"color_trees", color_trees}, {"tunnels", 0}, {"total", ray_trees + color_trees}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
