@@ -49,7 +49,8 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   StructureOptions& structures = arguments.structures;
   verb.add_option("--memory", raw.memory, std::string("Budget in bytes, like 2G") + kRecorded);
   verb.add_option("--ray-trees", raw.ray_trees, std::string("Percentage of ray trees kept") + kRecorded);
-  verb.add_option("--color-trees", raw.color_trees, "Percentage of the samples whose colour trees are kept between steps");
+  verb.add_option("--color-trees", raw.color_trees,
+                  "Percentage of the samples whose colour trees are kept between steps");
   verb.add_option("--tunnels", structures.tunnels,
                   "Replay: most tunnels of a region, the last for all further paths; 0: none")
       ->check(CLI::Range(0, 16));

@@ -68,14 +68,18 @@ void inspect_cache(const Arguments& arguments, Console& console) {
   Json manifest;
   require_sound(read_manifest(arguments.inputs[0], manifest), arguments.inputs[0]);
   const Json& content = manifest["content"];
-  std::uint64_t bytes = 0;
-  for (const Json& file : content["files"]) bytes += file["bytes"].get<std::uint64_t>();
+  const CacheSizes sizes = cache_sizes(manifest);
   console.line(arguments.inputs[0] + ": scene " + content["scene"].get<std::string>() + ", camera " +
                content["camera"]["name"].get<std::string>() + ", " + content["camera"]["width"].dump() + "x" +
                content["camera"]["height"].dump() + ", " + content["samples"].dump() + " samples a pixel, depth " +
                content["max_depth"].dump() + ", " + content["objects"].dump() + " objects, " +
                content["lights"].dump() + " lights, " + std::to_string(content["files"].size()) + " files, " +
-               std::to_string(bytes) + " bytes");
+               std::to_string(sizes.total_bytes) + " bytes");
+  for (const auto& [part, share] : sizes.per_sample()) {
+    const auto bytes = part == "total" ? sizes.total_bytes : sizes.bytes_by_part.at(part);
+    console.line(part + ": " + std::to_string(bytes) + " bytes, " + std::to_string(share) + " a sample");
+  }
+  manifest["bytes_per_sample"] = sizes.per_sample();
   console.json(manifest);
 }
 

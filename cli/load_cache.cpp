@@ -35,6 +35,20 @@ CacheContent load_cache(const std::string& cache) {
   return content;
 }
 
+CacheSizes cache_sizes(const Json& manifest) {
+  CacheSizes sizes;
+  const Json& content = manifest["content"];
+  for (const Json& file : content["files"]) {
+    const auto& name = file["name"].get_ref<const std::string&>();
+    const auto bytes = file["bytes"].get<std::uint64_t>();
+    sizes.bytes_by_part[name.substr(0, name.find_first_of("-/."))] += bytes;
+    sizes.total_bytes += bytes;
+  }
+  sizes.samples = content["camera"]["width"].get<std::uint64_t>() * content["camera"]["height"].get<std::uint64_t>() *
+                  content["samples"].get<std::uint64_t>();
+  return sizes;
+}
+
 MendedCache load_mended_cache(const std::string& cache) {
   MendedCache mended;
   CacheLosses losses;

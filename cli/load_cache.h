@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "cache/cache.h"
+#include "engine/report.h"
 
 namespace relook {
 
@@ -13,6 +14,8 @@ namespace relook {
 [[nodiscard]] ExitCode exit_code(CacheFault fault);
 /// Throws Error unless the answer is `none`.
 void require_sound(const CacheAnswer& answer, const std::string& cache);
+/// `manifest`: of read_manifest().
+[[nodiscard]] CacheSizes cache_sizes(const Json& manifest);
 /// Refuses any damage.
 [[nodiscard]] CacheContent load_cache(const std::string& cache);
 

@@ -229,19 +229,6 @@ void JournalRun::print(const StepReport& entry) {
   console_.line(line);
 }
 
-CacheSizes cache_sizes(const std::string& cache) {
-  Json manifest;
-  require_sound(read_manifest(cache, manifest), cache);
-  CacheSizes sizes;
-  for (const Json& file : manifest["content"]["files"]) {
-    const auto& name = file["name"].get_ref<const std::string&>();
-    const auto bytes = file["bytes"].get<std::uint64_t>();
-    sizes.bytes_by_part[name.substr(0, name.find_first_of("-/."))] += bytes;
-    sizes.total_bytes += bytes;
-  }
-  return sizes;
-}
-
 /// The journals of the command line, their names distinct.
 std::vector<Journal> read_journals(const Arguments& arguments) {
   std::vector<Journal> journals;
@@ -282,7 +269,9 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     throw Error(ExitCode::cache_mismatch, cache, "",
                 "the cache holds shadow counters of " + std::to_string(content.shadow_bits) +
                     " bits; preprocess again with --shadow-bits");
-  const CacheFacts facts{content.scene_hash, cache_sizes(cache), mended.damage, mended.ray_trees_rebuilt};
+  Json manifest;
+  require_sound(read_manifest(cache, manifest), cache);
+  const CacheFacts facts{content.scene_hash, cache_sizes(manifest), mended.damage, mended.ray_trees_rebuilt};
 
   std::uint64_t pixels_different = 0;
   RestoredImage restored = restore(has_several ? content : std::move(content), cache);

@@ -142,6 +142,13 @@ std::uint64_t peak_rss_bytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
+std::map<std::string, double> CacheSizes::per_sample() const {
+  const auto share = [&](std::uint64_t bytes) { return static_cast<double>(bytes) / static_cast<double>(samples); };
+  std::map<std::string, double> shares{{"total", share(total_bytes)}};
+  for (const auto& [part, bytes] : bytes_by_part) shares[part] = share(bytes);
+  return shares;
+}
+
 Json report_json(const RunReport& report) {
   Json steps = Json::array(), frames = Json::object();
   for (const Json& entry : report.resumed) {
@@ -167,6 +174,7 @@ Json report_json(const RunReport& report) {
           {"machine", {{"threads", report.threads}, {"cpu", cpu_model()}}},
           {"full_render_seconds", or_null(report.full_render_seconds)},
           {"cache_bytes", std::move(cache_bytes)},
+          {"cache_bytes_per_sample", report.cache.per_sample()},
           {"cache_damage", report.cache_damage},
           {"frames", std::move(frames)},
           {"interrupted", report.interrupted},

@@ -52,6 +52,9 @@ struct StructureOptions {
 struct CacheSizes {
   std::map<std::string, std::uint64_t> bytes_by_part;  // "look", "geometry", ...
   std::uint64_t total_bytes = 0;
+  std::uint64_t samples = 1;
+  /// Bytes a sample by part, and of all together as "total".
+  [[nodiscard]] std::map<std::string, double> per_sample() const;
 };
 
 struct RunReport {
