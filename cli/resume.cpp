@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/error.h"
+#include "base/files.h"
 #include "base/hash.h"
 #include "cache/cache.h"
 #include "load_cache.h"
@@ -12,31 +14,54 @@ namespace {
 
 constexpr std::size_t kEntityDepth = 2;  // "/materials/Glass"
 
-bool mentions_file(const Json& value) {
-  if (value.is_object() && (value.contains("asset") || value.contains("uri"))) return true;
-  return value.is_structured() &&
-         std::any_of(value.begin(), value.end(), [](const Json& part) { return mentions_file(part); });
+/// The file names that a value has under a key of journals that brings in a file.
+void collect_files(const Json& value, std::vector<std::string>& names) {
+  for (const auto& [key, part] : value.items()) {
+    if (value.is_object() && (key == "asset" || key == "uri") && part.is_string())
+      names.push_back(part.get<std::string>());
+    else if (part.is_structured())
+      collect_files(part, names);
+  }
 }
 
-bool names_files(const Edit& edit) {
-  return std::ranges::any_of(edit, [](const PatchOperation& operation) {
-    return mentions_file(operation.value) || operation.path.ends_with("/uri") || operation.path.ends_with("/asset");
-  });
+std::vector<std::string> files_of(const Edit& edit) {
+  std::vector<std::string> names;
+  for (const PatchOperation& operation : edit) {
+    const bool is_name = operation.path.ends_with("/uri") || operation.path.ends_with("/asset");
+    if (is_name && operation.value.is_string()) names.push_back(operation.value.get<std::string>());
+    if (operation.value.is_structured()) collect_files(operation.value, names);
+  }
+  return names;
+}
+
+/// Hashes of the files that a journal names; none when such a file may name others, or cannot be read.
+std::optional<Json> hashes_of_files(const Journal& journal) {
+  Json hashes = Json::object();
+  for (const JournalStep& step : journal.steps)
+    for (const Edit& edit : frames_of(step))
+      for (const std::string& name : files_of(edit)) {
+        if (name.ends_with(".gltf")) return std::nullopt;
+        try {
+          hashes[name] = hash128(read_file(contained_path(journal.path.parent_path(), name, journal.file, step.where)));
+        } catch (const InputError&) {  // said by the step itself, or data within the journal
+          return std::nullopt;
+        }
+      }
+  return hashes;
 }
 
 bool only_replaces_values(const Edit& edit) {
-  return std::ranges::all_of(edit, [](const PatchOperation& operation) {
-    const auto depth = static_cast<std::size_t>(std::ranges::count(operation.path, '/'));
-    return operation.op == PatchOp::test || (operation.op == PatchOp::replace && depth > kEntityDepth);
-  });
+  return files_of(edit).empty() && std::ranges::all_of(edit, [](const PatchOperation& operation) {
+           const auto depth = static_cast<std::size_t>(std::ranges::count(operation.path, '/'));
+           return operation.op == PatchOp::test || (operation.op == PatchOp::replace && depth > kEntityDepth);
+         });
 }
 
 }  // namespace
 
 std::optional<std::string> run_hash(const Arguments& arguments, const Journal& journal) {
-  for (const JournalStep& step : journal.steps)
-    for (const Edit& edit : frames_of(step))
-      if (names_files(edit)) return std::nullopt;
+  const std::optional<Json> files = hashes_of_files(journal);
+  if (!files) return std::nullopt;
   Json manifest;
   require_sound(read_manifest(arguments.inputs[0], manifest), arguments.inputs[0]);
   RunReport options;

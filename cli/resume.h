@@ -1,5 +1,5 @@
 // What a replay can take over from a run of the same inputs that ended early, and how it gets to where that run was.
-// A run that names further files is never the same: they may have changed.
+// The files that a journal names count with their bytes.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace relook {
 
-/// XXH3-128 of all that decides the entries and files of a run: cache (with the build that wrote it), journal, options;
-/// none for a journal that names files of its own. Throws Error when the cache has no readable manifest.
+/// XXH3-128 of all that decides the entries and files of a run: cache (with the build that wrote it), journal and the
+/// files it names, options; none for a journal with a .gltf asset, which may name further files. Throws Error when the
+/// cache has no readable manifest.
 [[nodiscard]] std::optional<std::string> run_hash(const Arguments& arguments, const Journal& journal);
 
 /// Edits that lead from the cache's state to that after the first `steps` steps: neighbours that only replace values
