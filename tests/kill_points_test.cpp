@@ -31,7 +31,7 @@ std::map<std::string, Bytes> contents(const std::filesystem::path& folder, const
   std::error_code error;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, error)) {
     const std::string name = entry.path().lexically_relative(folder).string();
-    if (entry.is_regular_file() && !without.contains(name)) files[name] = read_file(entry.path());
+    if (entry.is_regular_file() && !without.contains(name)) files[name] = frame_bytes(entry.path());
   }
   return files;
 }

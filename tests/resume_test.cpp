@@ -75,7 +75,7 @@ class Resume : public testing::Test {
     std::map<std::string, Bytes> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(at(run)))
       if (entry.is_regular_file() && entry.path().filename() != "report.json")
-        files[entry.path().lexically_relative(at(run)).string()] = read_file(entry.path());
+        files[entry.path().lexically_relative(at(run)).string()] = frame_bytes(entry.path());
     return files;
   }
   [[nodiscard]] Json report(const std::string& run) const {

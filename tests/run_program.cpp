@@ -60,6 +60,14 @@ ProgramResult run_program(const std::vector<std::string>& command) {
   return result;
 }
 
+std::vector<std::byte> frame_bytes(const std::filesystem::path& file) {
+  constexpr std::size_t kLastChunk = 12;
+  std::vector<std::byte> bytes = read_file(file);
+  if (file.extension() == ".png" && bytes.size() > kLastChunk)
+    bytes.erase(bytes.begin(), bytes.end() - static_cast<std::ptrdiff_t>(kLastChunk));
+  return bytes;
+}
+
 Json verified_report(const ReplayCase& replay, const ScratchFolder& folder) {
   const std::string cache = (folder / "cache").string(), run = (folder / "run").string();
   std::vector<std::string> preprocess{RELOOK_PROGRAM, "preprocess",   replay.scene.string(), "-o",

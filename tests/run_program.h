@@ -29,6 +29,9 @@ struct ProgramResult {
 /// Runs `command[0]` (searched for in PATH) without standard input and waits for it.
 [[nodiscard]] ProgramResult run_program(const std::vector<std::string>& command);
 
+/// The bytes of a file; of a preview (.png) the last chunk only: that it is whole.
+[[nodiscard]] std::vector<std::byte> frame_bytes(const std::filesystem::path& file);
+
 /// What a replay is to be run on.
 struct ReplayCase {
   std::filesystem::path scene, journal;
