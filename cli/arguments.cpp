@@ -13,11 +13,9 @@
 namespace relook {
 namespace {
 
-constexpr const char* kRecorded = "; recorded, frames never depend on it";
-
 /// Options that need our own syntax, as text until the whole line is read.
 struct RawTexts {
-  std::string resolution, memory, ray_trees, color_trees, verify, lights, progress = "auto";
+  std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
 };
 
 void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
@@ -47,8 +45,9 @@ void add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
 
 void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   StructureOptions& structures = arguments.structures;
-  verb.add_option("--memory", raw.memory, std::string("Budget in bytes, like 2G") + kRecorded);
-  verb.add_option("--ray-trees", raw.ray_trees, std::string("Percentage of ray trees kept") + kRecorded);
+  verb.add_option("--memory", raw.memory, "Most memory of the whole process, like 2G; without: no limit");
+  verb.add_option("--ray-trees", raw.ray_trees,
+                  "Percentage of the samples whose ray trees are kept, not just their paths");
   verb.add_option("--color-trees", raw.color_trees,
                   "Percentage of the samples whose colour trees are kept between steps");
   verb.add_option("--tunnels", structures.tunnels,
@@ -108,6 +107,14 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");
   add_float(replay, arguments);
   add_structures(replay, arguments, raw);
+  replay
+      .add_option("--policy", arguments.structures.policy,
+                  "What leaves memory first: weight (the paper's), lru, size, gdsf")
+      ->check(CLI::IsMember({"weight", "lru", "size", "gdsf"}));
+  replay.add_option("--spill", arguments.spill, "Folder for what leaves memory; the run folder")
+      ->check(CLI::ExistingDirectory);
+  replay.add_option("--disk", raw.disk, "Most disk for what leaves memory, like 20G; 0: it is worked out again");
+  replay.add_option("--access-log", arguments.access_log, "File to write: what each step used, for relook tune");
 
   CLI::App& compare = *app.add_subcommand("compare", "Compare two frames, or two runs of one journal");
   add_inputs(compare, arguments, "A B", "Frames (.exr) or run folders", 2, 2);
@@ -145,6 +152,7 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.resolution.empty())
     std::tie(arguments.view.width, arguments.view.height) = parse_resolution("--resolution", raw.resolution);
   if (!raw.memory.empty()) arguments.structures.memory_bytes = parse_size("--memory", raw.memory);
+  if (!raw.disk.empty()) arguments.structures.disk_bytes = parse_size("--disk", raw.disk);
   if (!raw.ray_trees.empty())
     arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);
   if (!raw.color_trees.empty())

@@ -41,6 +41,8 @@ struct Arguments {
   bool baseline = false;    // replay
   bool strict = false;      // replay: no cache with damage, even such as can be made good
   bool fresh = false;       // replay: no frame of an earlier run is kept
+  std::string spill;        // replay: folder of the spill file; "": the run's
+  std::string access_log;   // replay: file, or ""
   bool print_look = false;  // inspect
   std::string scene;        // inspect, replay, check
 };

@@ -23,7 +23,19 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 RegionOptions region_options(const StructureOptions& structures) {
-  return {structures.groups, structures.tunnels, structures.color_trees_percent / 100, structures.atoms};
+  return {structures.groups, structures.tunnels, structures.ray_trees_percent / 100,
+          structures.color_trees_percent / 100, structures.atoms};
+}
+
+ResidencyOptions residency_options(const Arguments& arguments, const std::filesystem::path& folder) {
+  ResidencyOptions options;
+  options.memory_bytes = arguments.structures.memory_bytes;
+  for (const EvictionPolicy policy : kEvictionPolicies)
+    if (policy_name(policy) == arguments.structures.policy) options.policy = policy;
+  options.spill_folder = arguments.spill.empty() ? folder : std::filesystem::path(arguments.spill);
+  if (arguments.structures.disk_bytes) options.disk_bytes = *arguments.structures.disk_bytes;
+  options.logs_accesses = !arguments.access_log.empty();
+  return options;
 }
 
 /// What a report says of the cache.
@@ -60,8 +72,8 @@ class JournalRun {
   const Arguments& arguments_;
   Console& console_;
   const Journal& journal_;
+  RunFolder folder_;  // there before the replayer spills into it
   Replayer replayer_;
-  RunFolder folder_;
   RunReport report_;
   std::uint64_t pixels_different_ = 0, ray_trees_rebuilt_ = 0;
   std::size_t steps_done_ = 0;  // of the journal
@@ -72,10 +84,11 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
     : arguments_(arguments),
       console_(console),
       journal_(journal),
-      replayer_(std::move(*restored.state), std::move(restored.image), region_options(arguments.structures)),
-      folder_(folder, replayer_.image().frame.width, replayer_.image().frame.height,
+      folder_(folder, restored.image.frame.width, restored.image.frame.height,
               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, run_hash(arguments, journal),
-              arguments.fresh) {
+              arguments.fresh),
+      replayer_(std::move(*restored.state), std::move(restored.image), region_options(arguments.structures),
+                residency_options(arguments, folder)) {
   report_.scene = replayer_.state().document().file;
   report_.scene_hash = cache.scene_hash;
   report_.journal = journal.file;
@@ -100,6 +113,7 @@ std::uint64_t JournalRun::run() {
     throw;
   }
   folder_.write_report(report_);
+  if (!arguments_.access_log.empty()) write_file(arguments_.access_log, replayer_.residency().access_log());
   return pixels_different_;
 }
 
@@ -134,7 +148,7 @@ void JournalRun::base_step() {
   entry.name = "base";
   const Frame& frame = replayer_.image().frame;
   entry.counters.samples_total = std::uint64_t{frame.width} * frame.height * report_.view.samples;
-  entry.counters.ray_trees_rebuilt = ray_trees_rebuilt_;
+  entry.counters.rebuilt.ray_trees = ray_trees_rebuilt_;
   if (arguments_.baseline && !arguments_.verify_percent) full_render();
   finish(std::move(entry), StepResult(), std::chrono::steady_clock::now());
 }

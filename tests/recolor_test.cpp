@@ -138,8 +138,8 @@ TEST(RecolorCost, NoMoreColorTreesAreKeptThanAllowed) {
     const StepResult step = replayer.step(replace_edit(pointer, 21 + k), "recolor", ".");
     const auto allowed = static_cast<std::uint64_t>(0.3 * static_cast<double>(step.counters.samples_total));
     EXPECT_GT(step.counters.samples_affected, allowed);
-    EXPECT_GE(step.counters.color_trees_evicted, step.counters.samples_affected - allowed);
-    EXPECT_LT(step.counters.color_trees_evicted, step.counters.samples_affected) << "some tile is kept";
+    EXPECT_GE(step.counters.evicted.color_trees, step.counters.samples_affected - allowed);
+    EXPECT_LT(step.counters.evicted.color_trees, step.counters.samples_affected) << "some tile is kept";
     EXPECT_GT(replayer.resident().color_trees, before);
   }
 }

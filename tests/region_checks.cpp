@@ -138,10 +138,11 @@ std::size_t segments_outside(const Replayer& replayer, const ImageRegions& regio
     const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
     const TileTrees& trees = image.trees[tile];
     for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
-      TreeBlock block;
+      GrowCounters counters;
+TreeBlock block;
       const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), layout_of(replayer)),
                               trees.hits_of(sample).data()};
-      expand_tree(grow, primaries.ray(rect, sample), sample, stored, block);
+      expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
       const std::uint32_t leaf = leaf_of(sample / image.view.samples, rect.x1 - rect.x0);
       if (!is_enclosed_everywhere(scene, block, regions.tunnels(tile), leaf, segments)) ++outside;
     }

@@ -32,25 +32,68 @@ CompressedImage& CompressedEdits::of(const ParameterSet& parameters) {
     found = std::prev(images_.end());
   }
   (*found)->last_step = ++step_;
+  ++(*found)->uses;
+  at_work_ = found->get();
   return **found;
 }
 
 void CompressedEdits::note_colors(const ColorChange& change) {
   if (change.new_environment || !change.reassigned.empty()) clear();  // programs may go, or belong to others
-  std::erase_if(images_, [&](const auto& image) {
+  erase([&](const CompressedImage& image) {
     return std::ranges::any_of(change.restructured,
-                               [&](MaterialId id) { return may_reach_others(image->parameters, id); });
+                               [&](MaterialId id) { return may_reach_others(image.parameters, id); });
   });
   for (const auto& image : images_)
     for (CompressedTile& tile : image->tiles)
-      if (is_outdated(tile, change)) tile = {};
+      if (is_outdated(tile, change)) drop(tile);
 }
 
 void CompressedEdits::note_trees(std::size_t tile) {
-  for (const auto& image : images_) image->tiles[tile] = {};
+  for (const auto& image : images_) drop(image->tiles[tile]);
+}
+
+void CompressedEdits::keep(CompressedTile& place, CompressedTile tile) {
+  bytes_ += tile.bytes;
+  bytes_ -= place.bytes;
+  place = std::move(tile);
+}
+
+void CompressedEdits::erase(const std::function<bool(const CompressedImage&)>& condition) {
+  std::erase_if(images_, [&](const auto& image) {
+    if (!condition(*image)) return false;
+    for (const CompressedTile& tile : image->tiles) bytes_ -= tile.bytes;
+    return true;
+  });
+}
+
+void CompressedEdits::clear() {
+  erase([](const CompressedImage&) { return true; });
+}
+
+double CompressedEdits::weight(EvictionPolicy policy, const CompressedImage& image, const CompressedTile& tile) const {
+  PieceFacts facts;
+  facts.bytes = std::max<std::size_t>(tile.bytes, 1);
+  facts.return_seconds = tile.build_seconds;
+  facts.last_use = image.last_step;
+  facts.uses = image.uses;
+  return eviction_weight(policy, facts, step_);
+}
+
+void CompressedEdits::list_victims(EvictionPolicy policy, std::vector<Victim>& victims) {
+  for (const auto& image : images_) {
+    if (image.get() == at_work_) continue;
+    for (CompressedTile& tile : image->tiles)
+      if (!tile.samples.empty())
+        victims.push_back({weight(policy, *image, tile), [this, &tile] {
+                             const std::uint64_t samples = tile.samples.size();
+                             drop(tile);
+                             return samples;
+                           }});
+  }
 }
 
 std::uint64_t CompressedEdits::trim() {
+  at_work_ = nullptr;
   const std::uint64_t before = samples();
   std::uint64_t kept = before;
   if (kept > most_samples_) {
@@ -62,31 +105,25 @@ std::uint64_t CompressedEdits::trim() {
     for (const auto& image : images_)
       for (CompressedTile& tile : image->tiles) {
         if (tile.samples.empty()) continue;
-        const auto age = static_cast<double>(1 + step_ - image->last_step);
-        pieces.push_back({&tile, tile.build_seconds / (static_cast<double>(tile.bytes) * age)});
+        pieces.push_back({&tile, weight(EvictionPolicy::weight, *image, tile)});
       }
     std::ranges::sort(pieces, {}, &Piece::weight);
     for (const Piece& piece : pieces) {
       if (kept <= most_samples_) break;
       kept -= piece.tile->samples.size();
-      *piece.tile = {};
+      drop(*piece.tile);
     }
   }
-  std::erase_if(images_, [](const auto& image) {
+  erase([](const CompressedImage& image) {
     const bool is_empty =
-        std::ranges::all_of(image->tiles, [](const CompressedTile& tile) { return tile.samples.empty(); });
-    return is_empty && !image->is_valid();
+        std::ranges::all_of(image.tiles, [](const CompressedTile& tile) { return tile.samples.empty(); });
+    return is_empty && !image.is_valid();
   });
-  while (images_.size() > kMostSets)
-    images_.erase(std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_step; }));
+  while (images_.size() > kMostSets) {
+    const auto oldest = std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_step; });
+    erase([gone = oldest->get()](const CompressedImage& image) { return &image == gone; });
+  }
   return before - samples();
-}
-
-std::size_t CompressedEdits::bytes() const {
-  std::size_t sum = 0;
-  for (const auto& image : images_)
-    for (const CompressedTile& tile : image->tiles) sum += sizeof(tile) + tile.bytes;
-  return sum;
 }
 
 std::uint64_t CompressedEdits::samples() const {

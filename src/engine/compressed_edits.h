@@ -1,10 +1,13 @@
 // Colour trees that are kept (paper 3.3, 4.1.1): for sets of parameters that steps have changed, the compressed trees
 // of the samples that depend on them. What else an edit changes makes them invalid tile by tile.
 #pragma once
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "cache/residency.h"
 #include "color/compressed_block.h"
 #include "engine/change.h"
 #include "region/quadtree.h"
@@ -30,7 +33,7 @@ struct CompressedImage {
   ParameterSet parameters;
   SplitTable splits;
   std::vector<CompressedTile> tiles;
-  std::uint64_t last_step = 0;
+  std::uint64_t last_step = 0, uses = 0;
 };
 
 class CompressedEdits {
@@ -39,27 +42,38 @@ class CompressedEdits {
   CompressedEdits(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
 
   [[nodiscard]] std::uint64_t most_samples() const { return most_samples_; }
-  /// What is kept for the parameters, perhaps nothing yet. Valid until the next call.
+  /// What is kept for the parameters, perhaps nothing yet. Valid until trim().
   [[nodiscard]] CompressedImage& of(const ParameterSet& parameters);
 
   /// To be called with every change before its step's own trees are used.
   void note_colors(const ColorChange& change);
   /// The trees of a tile have changed.
   void note_trees(std::size_t tile);
-  void clear() { images_.clear(); }
+  void clear();
+  /// Puts what has been built in its place. Tiles may be put at the same time.
+  void keep(CompressedTile& place, CompressedTile tile);
+  void drop(CompressedTile& place) { keep(place, {}); }
 
   /// After a step: drops what has the least information weight (paper 4.3: time to rebuild over size and over the
   /// number of changes since it was used) until no more samples than allowed are left. Returns the number of colour
   /// trees dropped.
   std::uint64_t trim();
 
-  [[nodiscard]] std::size_t bytes() const;
+  /// What could leave memory at once: not what of() gave and trim() has not taken back.
+  void list_victims(EvictionPolicy policy, std::vector<Victim>& victims);
+
+  [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t samples() const;
 
  private:
+  void erase(const std::function<bool(const CompressedImage&)>& condition);
+  [[nodiscard]] double weight(EvictionPolicy policy, const CompressedImage& image, const CompressedTile& tile) const;
+
   std::size_t tile_count_;
   std::uint64_t most_samples_, step_ = 0;
+  std::atomic<std::uint64_t> bytes_ = 0;
   std::vector<std::unique_ptr<CompressedImage>> images_;
+  const CompressedImage* at_work_ = nullptr;
 };
 
 }  // namespace relook

@@ -2,6 +2,14 @@
 
 namespace relook {
 
+Moves& Moves::operator+=(const Moves& other) {
+  ray_trees += other.ray_trees;
+  sample_colors += other.sample_colors;
+  color_trees += other.color_trees;
+  tunnels += other.tunnels;
+  return *this;
+}
+
 Counters& Counters::operator+=(const Counters& other) {
   samples_total += other.samples_total;
   samples_affected += other.samples_affected;
@@ -15,7 +23,9 @@ Counters& Counters::operator+=(const Counters& other) {
   shadow_updates += other.shadow_updates;
   object_rays += other.object_rays;
   color_trees_evaluated += other.color_trees_evaluated;
-  ray_trees_rebuilt += other.ray_trees_rebuilt;
+  evicted += other.evicted;
+  rebuilt += other.rebuilt;
+  reloaded += other.reloaded;
   return *this;
 }
 

@@ -6,6 +6,12 @@
 
 namespace relook {
 
+/// What left memory or came back. Colour trees and rebuilt ray trees one by one; all else tile by tile.
+struct Moves {
+  std::uint64_t ray_trees = 0, sample_colors = 0, color_trees = 0, tunnels = 0;
+  Moves& operator+=(const Moves& other);
+};
+
 struct Counters {
   std::uint64_t samples_total = 0, samples_affected = 0;  // affected: visited because they may change
   std::uint64_t pixels_changed = 0;                       // pixels with at least one different bit
@@ -16,8 +22,7 @@ struct Counters {
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree
   std::uint64_t color_trees_evaluated = 0;
-  std::uint64_t ray_trees_rebuilt = 0;    // whose tile was damaged or missing in the cache
-  std::uint64_t color_trees_evicted = 0;  // compressed ones, dropped to keep within their share
+  Moves evicted, rebuilt, reloaded;
 
   Counters& operator+=(const Counters& other);
 };

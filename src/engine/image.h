@@ -31,6 +31,9 @@ struct TileRect {
 [[nodiscard]] std::size_t tile_count(std::uint32_t width, std::uint32_t height);
 [[nodiscard]] TileRect tile_rect(std::size_t tile, std::uint32_t width, std::uint32_t height);
 
+/// Are the hits of a tile's ray trees kept? Without, they follow from the paths (paper 4.1.2).
+[[nodiscard]] inline bool has_hits(const TileTrees& trees) { return !trees.first_hit.empty(); }
+
 struct Image {
   ViewOptions view;
   Frame frame;

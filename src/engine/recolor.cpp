@@ -29,8 +29,8 @@ class TileCompressor {
       const PathId path = trees_.paths[sample];
       if ((p_.tasks.of_path[path.index()] & kShade) == 0) return;
       const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}),
-                              trees_.hits_of(sample).data()};
-      roots_.push_back(expand_tree(p_.grow, primaries_.ray(rect_, sample), sample, stored, block_));
+                              has_hits(trees_) ? trees_.hits_of(sample).data() : nullptr};
+      roots_.push_back(expand_tree(p_.grow, primaries_.ray(rect_, sample), sample, stored, block_, counters_));
       if (roots_.size() == kBlockSamples) flush();
     });
     flush();
@@ -40,6 +40,7 @@ class TileCompressor {
     tile_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(tile_);
   }
+  [[nodiscard]] const GrowCounters& counters() const { return counters_; }
 
  private:
   void flush() {
@@ -60,12 +61,14 @@ class TileCompressor {
   Shader& shader_;
   TreeBlock block_;
   std::vector<std::uint32_t> roots_;
+  GrowCounters counters_;
   CompressedTile tile_;
 };
 
 /// Evaluates a valid tile and brings colours and frame up to date: the mask of its changed pixels.
 TileMask recolor_tile(const CompressedTile& compressed, std::size_t tile, const Scene& scene, StoredImage& stored,
                       ColorMemory& memory) {
+  const auto lease = stored.residency().use(PieceKind::sample_colors, tile);
   std::span<const std::uint32_t> samples(compressed.samples);
   for (const CompressedBlock& block : compressed.blocks) {
     stored.keep_colors(tile, samples.first(block.roots.size()), block.evaluate(scene, memory));
@@ -122,11 +125,11 @@ void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch&
   const std::vector<Leaves>* known_leaves = selection_.leaves(change);
   Search found = search(change, kept, result, watch);
   const Image& image = stored_.image();
-  const GrowScene grow{rays_, nullptr, image.view.max_depth, image.view.shadow_bits};
+  const GrowScene grow{rays_, nullptr, image.view.max_depth, image.view.shadow_bits, &objects_};
   const std::vector<bool> near_tiles;
   const UpdatePass pass{
-      image,   stored_.lights(), grow,         change,   found.tasks, stored_.classes(), stored_.regions(),
-      nullptr, near_tiles,       known_leaves, programs_};
+      image,   stored_.lights(), grow,         change,    found.tasks,        stored_.classes(), stored_.regions(),
+      nullptr, near_tiles,       known_leaves, programs_, stored_.residency()};
   parallel_for(found.works.size(), [&](std::size_t tile) {
     if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);
   });
@@ -139,10 +142,18 @@ void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch&
       kept.tiles[tile].is_valid = true;  // none of its samples depends on the parameters
     if (!found.works.empty()) result.counters.by_groups += found.works[tile].by_groups;
   }
+  if (stored_.residency().any_missing(PieceKind::ray_trees)) {
+    std::vector<std::size_t> to_build;
+    for (const std::size_t tile : tiles)
+      if (!kept.tiles[tile].is_valid) to_build.push_back(tile);
+    objects_.prepare(
+        stored_.objects_to_meet(to_build, [&](PathId path) { return found.tasks.of_path[path.index()] != 0; }));
+  }
   watch.lap(result.seconds.test);
 
   std::vector<TileMask> changed(tiles.size());
   std::vector<std::size_t> samples(tiles.size());
+  std::vector<GrowCounters> grown(tiles.size());
   result.dependent.resize(kept.tiles.size());
   result.touched.resize(kept.tiles.size());
   Room room(compressed_.most_samples());
@@ -151,22 +162,28 @@ void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch&
     CompressedTile& tile = kept.tiles[tiles[i]];
     if (!tile.is_valid) {
       const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays_, programs_); });
-      tile = TileCompressor(pass, tiles[i], kept, *shader).compress(found.works[tiles[i]].leaves);
+      const auto lease = stored_.residency().use(PieceKind::ray_trees, tiles[i]);
+      TileCompressor compressor(pass, tiles[i], kept, *shader);
+      compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
+      grown[i] = compressor.counters();
     }
     const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
     changed[i] = recolor_tile(tile, tiles[i], rays_.scene(), stored_, *memory);
     samples[i] = tile.samples.size();
     result.dependent[tiles[i]] = tile.leaves;
-    if (!room.take(samples[i])) tile = {};  // at once, so that what cannot be kept does not pile up
+    if (!room.take(samples[i]) || !stored_.residency().make_room(0))
+      compressed_.drop(tile);  // at once, so that what cannot be kept does not pile up
   });
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     result.changed_pixels.add(tiles[i], changed[i]);
     result.counters.samples_affected += samples[i];
-    if (!kept.tiles[tiles[i]].is_valid) result.counters.color_trees_evicted += samples[i];
+    result.counters.object_rays += grown[i].object_rays;
+    result.counters.rebuilt.ray_trees += grown[i].trees_rebuilt;
+    if (!kept.tiles[tiles[i]].is_valid) result.counters.evicted.color_trees += samples[i];
   }
   result.counters.color_trees_evaluated = result.counters.samples_affected;
   if (!found.works.empty()) selection_.keep(change, std::move(found.tasks), result.dependent);
-  result.counters.color_trees_evicted += compressed_.trim();
+  result.counters.evicted.color_trees += compressed_.trim();
   watch.lap(result.seconds.evaluate);
 }
 

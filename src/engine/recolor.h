@@ -16,9 +16,14 @@ namespace relook {
 /// Works on the parts of a replay, which outlive it.
 class Recolorer {
  public:
-  Recolorer(StoredImage& stored, const RayScene& rays, ProgramTable& programs, KeptSelection& selection,
-            CompressedEdits& compressed)
-      : stored_(stored), rays_(rays), programs_(programs), selection_(selection), compressed_(compressed) {}
+  Recolorer(StoredImage& stored, const RayScene& rays, ObjectLevels& objects, ProgramTable& programs,
+            KeptSelection& selection, CompressedEdits& compressed)
+      : stored_(stored),
+        rays_(rays),
+        objects_(objects),
+        programs_(programs),
+        selection_(selection),
+        compressed_(compressed) {}
 
   /// Compresses what depends on the changed parameters, unless it is already, and evaluates it. Requires:
   /// is_compressible(change.colors); no tree is touched; nothing is shown on top of the image.
@@ -31,6 +36,7 @@ class Recolorer {
 
   StoredImage& stored_;
   const RayScene& rays_;
+  ObjectLevels& objects_;
   ProgramTable& programs_;
   KeptSelection& selection_;
   CompressedEdits& compressed_;

@@ -1,5 +1,7 @@
 #include "engine/regions.h"
 
+#include <chrono>
+
 #include "base/parallel.h"
 #include "engine/sampling.h"
 
@@ -9,8 +11,10 @@ namespace {
 /// Encloses the ray trees of a tile's leaves, expanded from their stored form.
 class LeafTunnels {
  public:
-  LeafTunnels(const Image& image, const GrowScene& grow, std::size_t tile, std::size_t most, const ClassOf& class_of)
-      : image_(image),
+  LeafTunnels(const Image& image, const GrowScene& grow, std::size_t tile, std::size_t most, const ClassOf& class_of,
+              Residency::Lease trees_lease)
+      : lease_(std::move(trees_lease)),
+        image_(image),
         grow_(grow),
         trees_(image.trees[tile]),
         rect_(tile_rect(tile, image.frame.width, image.frame.height)),
@@ -32,23 +36,29 @@ class LeafTunnels {
   void add(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
     block_.clear();
-    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()), trees_.hits_of(sample).data()};
-    const std::uint32_t root = expand_tree(grow_, primaries_.ray(rect_, sample), sample, stored, block_);
+    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()),
+                            has_hits(trees_) ? trees_.hits_of(sample).data() : nullptr};
+    const std::uint32_t root = expand_tree(grow_, primaries_.ray(rect_, sample), sample, stored, block_, counters_);
     enclose(set_.of(class_of_(path)), grow_.scene, block_, root, histories_);
   }
 
+  Residency::Lease lease_;
   const Image& image_;
   const GrowScene& grow_;
   const TileTrees& trees_;
   TileRect rect_;
   PrimaryRays primaries_;
   const ClassOf& class_of_;
+  GrowCounters counters_;
   TunnelSet set_;
   TreeBlock block_;
   std::vector<History> histories_;
 };
 
 Leaves all_leaves() { return Leaves().set(); }
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 }  // namespace
 
@@ -65,21 +75,40 @@ void ImageRegions::build_groups(const Image& image, const ClassOf& class_of) {
 
 void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
   if (options_.tunnels == 0) return;
-  tunnels_.assign(image.trees.size(), {});
+  add_pieces(image.trees.size());
   parallel_for(tunnels_.size(), [&](std::size_t tile) {
-    LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of);
-    tunnels_[tile] =
-        TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
+    const auto start = Clock::now();
+    LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
+    keep(tile,
+         TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); }),
+         seconds_since(start));
   });
   const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
   image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
                                  [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
 }
 
-void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const {
-  for (std::size_t k = 0; k < tunnels_[tile].count(kRoot); ++k)
-    enclose(tunnel, tunnels_[tile].tunnel(kRoot, k).sections);
+void ImageRegions::add_pieces(std::size_t tiles) {
+  tunnels_.assign(tiles, {});
+  tile_sections_.assign(tiles, {});
+  if (residency_ == nullptr) return;
+  PieceHandler handler;
+  handler.pack = [this](std::size_t tile) { return tunnels_[tile].packed(); };
+  handler.unpack = [this](std::size_t tile, BytesView bytes) { tunnels_[tile] = TileTunnels::unpacked(bytes); };
+  handler.drop = [this](std::size_t tile) { tunnels_[tile] = {}; };
+  handler.may_be_missing = true;
+  residency_->add_kind(PieceKind::tunnels, tiles, std::move(handler));
 }
+
+void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, double seconds) {
+  tile_sections_[tile] = {};
+  for (std::size_t k = 0; k < tunnels.count(kRoot); ++k)
+    enclose(tile_sections_[tile], tunnels.tunnel(kRoot, k).sections);
+  tunnels_[tile] = std::move(tunnels);
+  if (residency_ != nullptr) residency_->set(PieceKind::tunnels, tile, tunnels_[tile].bytes(), seconds);
+}
+
+void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const { enclose(tunnel, tile_sections_[tile]); }
 
 void ImageRegions::update_image(const std::vector<std::size_t>& tiles) {
   if (!has_tunnels()) return;
@@ -90,9 +119,13 @@ void ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t
                           const ClassOf& class_of) {
   if (has_groups()) groups_[tile] = groups_of(image, tile, class_of);
   if (!has_tunnels()) return;
-  LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of);
-  tunnels_[tile] =
-      tunnels_[tile].rebuilt(changed, options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
+  const Residency::Lease tunnels_lease = lease(PieceKind::tunnels, tile);
+  const auto start = Clock::now();
+  LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
+  keep(tile,
+       tunnels_[tile].rebuilt(tunnels_[tile].empty() ? all_leaves() : changed, options_.tunnels,
+                              [&](std::uint32_t leaf) { return leaves.of(leaf); }),
+       seconds_since(start));
 }
 
 std::size_t ImageRegions::group_bytes() const {

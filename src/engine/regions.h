@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "cache/residency.h"
 #include "engine/image.h"
 #include "region/path_groups.h"
 #include "region/tile_tunnels.h"
@@ -15,13 +16,17 @@ namespace relook {
 struct RegionOptions {
   std::size_t groups = 4;   // most paths of a group; 0: none
   std::size_t tunnels = 1;  // a region's; 0: none
+  double ray_trees = 1;     // share of the samples whose ray trees are kept
   double color_trees = 1;   // share of the samples whose colour trees are kept, over all sets of parameters
   std::uint32_t atoms = 0;  // depth of the node hierarchy from which nodes count as one object; 0: none
 };
 
 class ImageRegions {
  public:
-  explicit ImageRegions(const RegionOptions& options) : options_(options) {}
+  /// `residency`: where the tunnels and ray trees of tiles are pieces; outlives this, which then stays where it is.
+  /// Null: everything is resident.
+  explicit ImageRegions(const RegionOptions& options, Residency* residency = nullptr)
+      : options_(options), residency_(residency) {}
   [[nodiscard]] const RegionOptions& options() const { return options_; }
 
   /// Groups of all tiles, afresh. `class_of`: see PathGroups.
@@ -44,16 +49,25 @@ class ImageRegions {
   }
   [[nodiscard]] const TunnelPyramid& image_tunnels() const { return image_tunnels_; }
   [[nodiscard]] const PathGroups& groups(std::size_t tile) const { return groups_[tile]; }
+  /// Empty if they are missing. Requires: they are leased.
   [[nodiscard]] const TileTunnels& tunnels(std::size_t tile) const { return tunnels_[tile]; }
   [[nodiscard]] std::size_t group_bytes() const;
   [[nodiscard]] std::size_t tunnel_bytes() const;
 
  private:
+  void add_pieces(std::size_t tiles);
+  [[nodiscard]] Residency::Lease lease(PieceKind kind, std::size_t tile) {
+    return residency_ != nullptr ? residency_->use(kind, tile) : Residency::Lease();
+  }
+  /// Takes over the tunnels of a tile, which `seconds` were spent on.
+  void keep(std::size_t tile, TileTunnels tunnels, double seconds);
   void enclose_tile(std::size_t tile, Sections& tunnel) const;
   [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const;
   RegionOptions options_;
+  Residency* residency_;
   std::vector<PathGroups> groups_;
   std::vector<TileTunnels> tunnels_;
+  std::vector<Sections> tile_sections_;  // around all of a tile's tunnels: always resident
   TunnelPyramid image_tunnels_;
 };
 

@@ -47,21 +47,34 @@ std::size_t common(const std::vector<std::uint32_t>& a, const std::vector<std::u
 struct Replayer::Impl {
   SceneState state;
   RayScene rays;
+  Residency residency;
   StoredImage stored;
+  ObjectLevels objects{rays};
   ProgramTable programs;
   KeptSelection selection;
   CompressedEdits compressed;
-  Recolorer recolorer{stored, rays, programs, selection, compressed};
+  Recolorer recolorer{stored, rays, objects, programs, selection, compressed};
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
   std::vector<ShownSamples> on_top;   // by tile, while objects are lifted: where they are seen
 
-  Impl(SceneState s, Image i, const RegionOptions& options)
+  Impl(SceneState s, Image i, const RegionOptions& options, ResidencyOptions memory)
       : state(std::move(s)),
         rays(state.scene()),
-        stored(std::move(i), state.scene().light_order, atoms(options.atoms), options),
+        residency(with_tracking(std::move(memory), options)),
+        stored(std::move(i), state.scene().light_order, atoms(options.atoms), options, residency),
         compressed(image().trees.size(),
-                   static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {}
+                   static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {
+    residency.set_others(
+        [this] { return compressed.bytes(); },
+        [this](std::vector<Victim>& victims) { compressed.list_victims(residency.policy(), victims); });
+    stored.forget_hits(options.ray_trees);
+  }
+
+  static ResidencyOptions with_tracking(ResidencyOptions memory, const RegionOptions& options) {
+    memory.tracks_pieces = memory.tracks_pieces || options.ray_trees < 1;
+    return memory;
+  }
 
   [[nodiscard]] const Image& image() const { return stored.image(); }
   [[nodiscard]] std::vector<ObjectId> atoms(std::uint32_t depth) const {
@@ -69,7 +82,7 @@ struct Replayer::Impl {
   }
   [[nodiscard]] bool has_atoms() const { return stored.regions().options().atoms > 0; }
   [[nodiscard]] GrowScene grow(const Tracer::TopLevel* scene_level) const {
-    return {rays, scene_level, image().view.max_depth, image().view.shadow_bits};
+    return {rays, scene_level, image().view.max_depth, image().view.shadow_bits, &objects};
   }
 
   void forget_programs(const StepChange& change) {
@@ -120,16 +133,19 @@ struct Replayer::Impl {
                           near_tiles,
                           known_leaves,
                           programs,
+                          residency,
                           keeps_trees};
     std::vector<TileWork> works(image().trees.size());
     parallel_for(works.size(), [&](std::size_t tile) { works[tile] = find_tile_work(pass, tile); });
     watch.lap(result.seconds.test);
     Pool<Shader> shaders;
     std::vector<TileUpdate> updates = updates_to_do(works);
+    prepare_objects(updates, tasks, keeps_trees);
     const std::vector<std::size_t> order = by_work(updates, works);
     parallel_for(order.size(), [&](std::size_t i) {
       TileUpdate& update = updates[order[i]];
       update = update_tile(pass, update.tile, works[update.tile], shaders);
+      if (keeps_trees) stored.keep_hits(update);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
     count(updates, works, uses_tunnels, result);
@@ -137,6 +153,15 @@ struct Replayer::Impl {
     for (const TileWork& work : works) leaves.push_back(work.by_path);
     selection.keep(change, std::move(tasks), std::move(leaves));
     return updates;
+  }
+
+  /// For trees whose hits are not kept: of those that are traced anew, no object is asked for.
+  void prepare_objects(const std::vector<TileUpdate>& updates, const PathTasks& tasks, bool keeps_trees) {
+    if (!residency.any_missing(PieceKind::ray_trees)) return;
+    std::vector<std::size_t> tiles;
+    for (const TileUpdate& update : updates) tiles.push_back(update.tile);
+    objects.prepare(stored.objects_to_meet(
+        tiles, [&](PathId path) { return !keeps_trees || (tasks.of_path[path.index()] & kShade) != 0; }));
   }
 
   /// `works`: by tile.
@@ -160,6 +185,8 @@ struct Replayer::Impl {
       tests += update.counters.ray_tests;
       counters.ray_updates += update.counters.ray_updates;
       counters.shadow_updates += update.counters.shadow_updates;
+      counters.object_rays += update.counters.object_rays;
+      counters.rebuilt.ray_trees += update.counters.trees_rebuilt;
     }
     require(tests <= stored.segments(), "each stored segment is tested once at most");
     counters.ray_tests += tests;
@@ -169,15 +196,18 @@ struct Replayer::Impl {
 
   /// Applies the edit to the scene and finds what it means.
   StepChange begin(const Edit& edit, std::string_view file, const std::filesystem::path& folder, StepResult& result) {
+    residency.begin_change();
     const SceneDelta delta = apply_edit(state, edit, file, folder);
     result.classification = classify(state.scene(), delta);
     if (has_atoms()) stored.extend_atoms(atoms(stored.regions().options().atoms));
     // Tunnels hold for the scene in which the trees were made; they are built when a change first needs them.
     StepChange change = find_change(rays, state.scene(), delta, stored.lights());
     if (change.touches_segments() && !change.rays.lights_changed && !stored.regions().has_tunnels())
-      stored.build_tunnels(grow(nullptr));
+      stored.build_tunnels(grow(nullptr), objects);
     rays.update(state.scene(), delta);
-    if (level) level->note_changed(selection_of(change));
+    const std::vector<ObjectId> changed = selection_of(change);
+    if (level) level->note_changed(changed);
+    objects.note_changed(changed);
     forget_programs(change);
     result.counters.samples_total = stored.samples();
     return change;
@@ -196,15 +226,10 @@ struct Replayer::Impl {
 
   void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
     if (!change.touches_rays()) return;
-    stored.keep_trees(updates, grow(nullptr), change.rays.lights_changed);
+    stored.keep_paths(updates, grow(nullptr), objects, change.rays.lights_changed);
     for (const TileUpdate& update : updates)
       if (!update.packed.empty()) compressed.note_trees(update.tile);
   }
-  void keep_colors(const std::vector<TileUpdate>& updates) {
-    parallel_for(updates.size(),
-                 [&](std::size_t i) { stored.keep_colors(updates[i].tile, updates[i].shaded, updates[i].colors); });
-  }
-
   /// Works pixels out again that lie under the samples with new colours or, by tile, under `others`.
   void refresh_pixels(const std::vector<TileUpdate>& updates, const std::vector<ShownSamples>& others,
                       StepResult& result) {
@@ -240,7 +265,6 @@ struct Replayer::Impl {
     const std::vector<TileUpdate> updates = run(change, {}, true, result, watch);
     keep_trees(updates, change);
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-    keep_colors(updates);
     refresh_pixels(updates, also_shown, result);
     watch.lap(result.seconds.evaluate);
   }
@@ -250,9 +274,15 @@ struct Replayer::Impl {
   }
 
   void finish(StepResult& result) {
-    if (has_atoms()) stored.set_atoms(atoms(stored.regions().options().atoms), grow(nullptr));
+    if (has_atoms()) stored.set_atoms(atoms(stored.regions().options().atoms), grow(nullptr), objects);
     Counters& counters = result.counters;
     counters.pixels_changed = result.changed_pixels.size();
+    const PieceCounts moves = residency.take_counts();
+    const auto of = [](const auto& counts, PieceKind kind) { return counts[static_cast<std::size_t>(kind)]; };
+    counters.evicted += {of(moves.evicted, PieceKind::ray_trees), of(moves.evicted, PieceKind::sample_colors),
+                         moves.others_evicted, of(moves.evicted, PieceKind::tunnels)};
+    counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees), of(moves.reloaded, PieceKind::sample_colors), 0,
+                          of(moves.reloaded, PieceKind::tunnels)};
     if (counters.ray_tests + counters.ray_tests_culled == 0) counters.ray_tests_culled = stored.segments();  // no pass
   }
 
@@ -315,7 +345,6 @@ struct Replayer::Impl {
     lifted = std::move(all);
     std::vector<TileUpdate> updates = run(change, lifted, true, result, watch);
     keep_trees(updates, change);
-    keep_colors(updates);
     watch.lap(result.seconds.update);
     return updates;
   }
@@ -356,14 +385,15 @@ struct Replayer::Impl {
   }
 };
 
-Replayer::Replayer(SceneState state, Image image, const RegionOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(state), std::move(image), options)) {}
+Replayer::Replayer(SceneState state, Image image, const RegionOptions& options, ResidencyOptions residency)
+    : impl_(std::make_unique<Impl>(std::move(state), std::move(image), options, std::move(residency))) {}
 Replayer::~Replayer() = default;
 Replayer::Replayer(Replayer&&) noexcept = default;
 
 const SceneState& Replayer::state() const { return impl_->state; }
 const Image& Replayer::image() const { return impl_->image(); }
 const ImageRegions& Replayer::regions() const { return impl_->stored.regions(); }
+const Residency& Replayer::residency() const { return impl_->residency; }
 std::uint64_t Replayer::segments() const { return impl_->stored.segments(); }
 
 Resident Replayer::resident() const {

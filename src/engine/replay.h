@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cache/residency.h"
 #include "engine/image.h"
 #include "engine/regions.h"
 #include "engine/step_result.h"
@@ -16,7 +17,8 @@ namespace relook {
 class Replayer {
  public:
   /// Takes over a state and the image rendered from it (by preprocess() or from a cache).
-  Replayer(SceneState state, Image image, const RegionOptions& options = {});
+  /// Throws IoError when the spill folder cannot be used.
+  Replayer(SceneState state, Image image, const RegionOptions& options = {}, ResidencyOptions residency = {});
   ~Replayer();
   Replayer(Replayer&&) noexcept;
 
@@ -28,6 +30,7 @@ class Replayer {
 
   /// Groups, and tunnels once a step has needed them.
   [[nodiscard]] const ImageRegions& regions() const;
+  [[nodiscard]] const Residency& residency() const;
 
   /// Applies one edit. Throws InputError with everything as before. Not during a drag.
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder);

@@ -47,9 +47,12 @@ Json resident_json(const Resident& resident) {
           {"total", resident.total}};
 }
 
-/// Numbers of trees. Colour trees alone are ever dropped, and none is read back.
-Json residency_json(std::uint64_t ray_trees, std::uint64_t color_trees) {
-  return {{"ray_trees", ray_trees}, {"color_trees", color_trees}, {"tunnels", 0}, {"total", ray_trees + color_trees}};
+Json moves_json(const Moves& moves) {
+  return {{"ray_trees", moves.ray_trees},
+          {"sample_colors", moves.sample_colors},
+          {"color_trees", moves.color_trees},
+          {"tunnels", moves.tunnels},
+          {"total", moves.ray_trees + moves.sample_colors + moves.color_trees + moves.tunnels}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
@@ -89,9 +92,9 @@ Json step_json(const StepReport& step) {
       {"color_trees_evaluated", counters.color_trees_evaluated},
       {"seconds", seconds_json(step.seconds)},
       {"resident", resident_json(step.resident)},
-      {"evicted", residency_json(0, counters.color_trees_evicted)},
-      {"rebuilt", residency_json(counters.ray_trees_rebuilt, 0)},
-      {"reloaded", residency_json(0, 0)},
+      {"evicted", moves_json(counters.evicted)},
+      {"rebuilt", moves_json(counters.rebuilt)},
+      {"reloaded", moves_json(counters.reloaded)},
       {"peak_rss", step.peak_rss_bytes},
       {"resumed", false},
       {"verify", verify_json(step.verify)}};
@@ -101,6 +104,8 @@ Json options_json(const RunReport& report) {
   const StructureOptions& structures = report.structures;
   return {{"max_depth", report.view.max_depth},
           {"memory", or_null(structures.memory_bytes)},
+          {"policy", structures.policy},
+          {"disk", or_null(structures.disk_bytes)},
           {"ray_trees", structures.ray_trees_percent},
           {"color_trees", structures.color_trees_percent},
           {"tunnels", structures.tunnels},

@@ -45,6 +45,8 @@ struct StepReport {
 /// Structure options as given; frames never depend on them.
 struct StructureOptions {
   std::optional<std::uint64_t> memory_bytes;
+  std::string policy = "weight";            // of eviction
+  std::optional<std::uint64_t> disk_bytes;  // of the spill file
   double ray_trees_percent = 100, color_trees_percent = 100;
   std::uint32_t tunnels = 1, groups = 4, atoms = 0;
 };

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 
+#include "base/byte_columns.h"
 #include "base/parallel.h"
 #include "engine/sampling.h"
 
@@ -19,36 +21,43 @@ void put_on_top(const ShownSamples& shown, std::uint32_t first, std::vector<Rgba
     colors[shown.samples[k] - first] = shown.colors[k];
 }
 
-/// Puts the new trees of a tile in place of the old ones. `ids`: of the update's paths in the image's table.
-void store_trees(TileTrees& trees, const TileUpdate& update, const std::vector<PathId>& ids) {
+/// The hits of a tile with those of an update in place of the old ones.
+TileTrees with_hits_of(const TileUpdate& update, TileTrees trees) {
   TileTrees next;
-  next.paths = std::move(trees.paths);
   next.first_hit.reserve(trees.first_hit.size());
   next.first_hit.push_back(0);
   next.hits.reserve(trees.hits.size());
   std::size_t k = 0;
-  for (std::uint32_t sample = 0; sample < next.paths.size(); ++sample) {
+  for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
     std::span<const Hit> hits = trees.hits_of(sample);
     if (k < update.packed.size() && update.packed[k] == sample) {
-      next.paths[sample] = ids[update.packed_paths[k].index()];
       hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
       ++k;
     }
     next.hits.insert(next.hits.end(), hits.begin(), hits.end());
     next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
   }
-  trees = std::move(next);
+  next.paths = std::move(trees.paths);
+  return next;
 }
+
+std::uint64_t hit_bytes(const TileTrees& trees) {
+  return trees.first_hit.capacity() * sizeof(std::uint32_t) + trees.hits.capacity() * sizeof(Hit);
+}
+
+/// Until it has been measured: about what a ray against one object takes.
+constexpr double kObjectRaySeconds = 5e-7;
 
 }  // namespace
 
 StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms,
-                         const RegionOptions& options)
+                         const RegionOptions& options, Residency& residency)
     : image_(std::move(image)),
+      residency_(residency),
       lights_(std::move(lights)),
       classes_(options.atoms > 0),
       atoms_(std::move(atoms)),
-      regions_(options),
+      regions_(options, &residency),
       tile_segments_(image_.trees.size(), 0),
       compact_paths_(image_.paths.size()) {
   index_paths();
@@ -58,19 +67,105 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
     samples_ += image_.trees[tile].paths.size();
   }
   regions_.build_groups(image_, class_of());
+  if (residency_.is_watched()) add_pieces();
 }
 
-void StoredImage::set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene) {
+void StoredImage::add_pieces() {
+  PieceHandler trees;
+  trees.pack = [this](std::size_t tile) {
+    ByteColumns columns;
+    columns.append(image_.trees[tile].first_hit);
+    columns.append(image_.trees[tile].hits);
+    return columns.take();
+  };
+  trees.unpack = [this](std::size_t tile, BytesView bytes) {
+    ByteColumnsReader columns(bytes);
+    columns.next(image_.trees[tile].first_hit);
+    columns.next(image_.trees[tile].hits);
+  };
+  trees.drop = [this](std::size_t tile) {
+    image_.trees[tile].first_hit = {};
+    image_.trees[tile].hits = {};
+  };
+  trees.may_be_missing = true;
+  residency_.add_kind(PieceKind::ray_trees, image_.trees.size(), std::move(trees));
+  PieceHandler colors;
+  colors.pack = [this](std::size_t tile) {
+    ByteColumns columns;
+    columns.append(image_.sample_colors[tile]);
+    return columns.take();
+  };
+  colors.unpack = [this](std::size_t tile, BytesView bytes) {
+    ByteColumnsReader(bytes).next(image_.sample_colors[tile]);
+  };
+  colors.drop = [this](std::size_t tile) { image_.sample_colors[tile] = {}; };
+  residency_.add_kind(PieceKind::sample_colors, image_.trees.size(), std::move(colors));
+  for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) {
+    note_hits(tile);
+    residency_.set(PieceKind::sample_colors, tile, image_.sample_colors[tile].size() * sizeof(Rgba), 0);
+  }
+}
+
+void StoredImage::note_hits(std::size_t tile) {
+  const TileTrees& trees = image_.trees[tile];
+  residency_.set(PieceKind::ray_trees, tile, hit_bytes(trees),
+                 static_cast<double>(trees.hits.size()) * kObjectRaySeconds);
+}
+
+void StoredImage::forget_hits(double share) {
+  if (share >= 1) return;
+  std::vector<std::size_t> tiles(image_.trees.size());
+  std::iota(tiles.begin(), tiles.end(), std::size_t{0});
+  const auto hits_per_sample = [&](std::size_t tile) {
+    const TileTrees& trees = image_.trees[tile];
+    return static_cast<double>(trees.hits.size()) / static_cast<double>(trees.paths.size());
+  };
+  std::ranges::stable_sort(tiles, std::greater(), hits_per_sample);
+  double left = static_cast<double>(samples_) * share;
+  for (const std::size_t tile : tiles) {
+    const auto samples = static_cast<double>(image_.trees[tile].paths.size());
+    if (samples <= left)
+      left -= samples;
+    else
+      residency_.forget(PieceKind::ray_trees, tile);
+  }
+}
+
+std::vector<ObjectId> StoredImage::objects_to_meet(std::span<const std::size_t> tiles,
+                                                   const std::function<bool(PathId)>& matters) const {
+  std::vector<bool> seen(image_.paths.size());
+  std::vector<ObjectId> objects;
+  for (const std::size_t tile : tiles) {
+    if (!residency_.is_missing(PieceKind::ray_trees, tile)) continue;
+    for (const PathId path : image_.trees[tile].paths) {
+      if (seen[path.index()] || !matters(path)) continue;
+      seen[path.index()] = true;
+      for_each_object(image_.paths.words(path), layout(), [&](ObjectId object) { objects.push_back(object); });
+    }
+  }
+  std::ranges::sort(objects);
+  objects.erase(std::ranges::unique(objects).begin(), objects.end());
+  return objects;
+}
+
+void StoredImage::build_tunnels(const GrowScene& scene, ObjectLevels& objects) {
+  std::vector<std::size_t> all(image_.trees.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  objects.prepare(objects_to_meet(all, [](PathId) { return true; }));
+  regions_.build_tunnels(image_, scene, class_of());
+}
+
+void StoredImage::set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene, ObjectLevels& objects) {
   if (atoms == atoms_) return;
   atoms_ = std::move(atoms);
-  classify_paths(scene);
+  classify_paths(scene, objects);
 }
 
-void StoredImage::classify_paths(const GrowScene& scene) {
+void StoredImage::classify_paths(const GrowScene& scene, ObjectLevels& objects) {
   classes_.clear();
   index_paths();
   regions_.build_groups(image_, class_of());
-  if (regions_.has_tunnels() && regions_.options().tunnels > 1) regions_.build_tunnels(image_, scene, class_of());
+  if (regions_.has_tunnels() && regions_.options().tunnels > 1) build_tunnels(scene, objects);
 }
 
 void StoredImage::index_paths() {
@@ -83,7 +178,21 @@ void StoredImage::count_segments(std::size_t tile) {
   for (PathId path : image_.trees[tile].paths) tile_segments_[tile] += index_.segments(path);
 }
 
-void StoredImage::keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed) {
+void StoredImage::keep_hits(TileUpdate& update) {
+  const auto lease = residency_.use(PieceKind::ray_trees, update.tile);
+  if (!update.packed.empty() && has_hits(image_.trees[update.tile])) {
+    TileTrees& trees = image_.trees[update.tile];
+    trees = with_hits_of(update, std::move(trees));
+    note_hits(update.tile);
+  }
+  update.hits = {};
+  update.first_hit = {};
+  if (!update.shaded.empty()) keep_colors(update.tile, update.shaded, update.colors);
+  update.colors = {};
+}
+
+void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, ObjectLevels& objects,
+                             bool lights_changed) {
   if (lights_changed) {
     image_.paths = PathTable();
     index_.clear();
@@ -95,20 +204,27 @@ void StoredImage::keep_trees(const std::vector<TileUpdate>& updates, const GrowS
     for (std::uint32_t i = 0; i < updates[k].paths.size(); ++i)
       ids[k].push_back(image_.paths.intern(updates[k].paths.words(PathId(i))));
   index_paths();
+  std::vector<std::size_t> changed;
+  for (std::size_t k = 0; k < updates.size(); ++k) {
+    const TileUpdate& update = updates[k];
+    if (update.packed.empty()) continue;
+    changed.push_back(update.tile);
+    std::vector<PathId>& paths = image_.trees[update.tile].paths;
+    for (std::size_t i = 0; i < update.packed.size(); ++i)
+      paths[update.packed[i]] = ids[k][update.packed_paths[i].index()];
+  }
+  if (regions_.has_tunnels() && residency_.any_missing(PieceKind::ray_trees))
+    objects.prepare(objects_to_meet(changed, [](PathId) { return true; }));
   parallel_for(updates.size(), [&](std::size_t k) {
     const TileUpdate& update = updates[k];
     if (update.packed.empty()) return;
-    store_trees(image_.trees[update.tile], update, ids[k]);
     count_segments(update.tile);
     regions_.update(image_, scene, update.tile, leaves_of(update.tile, update.packed), class_of());
   });
-  std::vector<std::size_t> changed;
-  for (const TileUpdate& update : updates)
-    if (!update.packed.empty()) changed.push_back(update.tile);
   regions_.update_image(changed);
   segments_ = 0;
   for (std::uint64_t count : tile_segments_) segments_ += count;
-  if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene);
+  if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene, objects);
 }
 
 Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
@@ -119,7 +235,7 @@ Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>
 }
 
 /// Numbers the paths in use afresh, in the order of tiles and samples.
-void StoredImage::drop_unused_paths(const GrowScene& scene) {
+void StoredImage::drop_unused_paths(const GrowScene& scene, ObjectLevels& objects) {
   PathTable used;
   std::vector<PathId> ids(image_.paths.size(), PathId::none());
   for (TileTrees& tile : image_.trees)
@@ -131,16 +247,19 @@ void StoredImage::drop_unused_paths(const GrowScene& scene) {
   image_.paths = std::move(used);
   compact_paths_ = image_.paths.size();
   index_.clear();
-  classify_paths(scene);
+  classify_paths(scene, objects);
 }
 
 void StoredImage::keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors) {
+  const auto lease = residency_.use(PieceKind::sample_colors, tile);
   std::vector<Rgba>& stored = image_.sample_colors[tile];
   for (std::size_t k = 0; k < samples.size(); ++k) stored[samples[k]] = colors[k];
+  residency_.set(PieceKind::sample_colors, tile, stored.size() * sizeof(Rgba), 0);
 }
 
 void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,
                                  TileMask& changed) {
+  const auto lease = residency_.use(PieceKind::sample_colors, tile);
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
   const std::uint32_t width = rect.x1 - rect.x0, count = image_.view.samples;
   const Rgba* stored = image_.sample_colors[tile].data();

@@ -1,9 +1,11 @@
 // What is kept of an image through a series of edits: paths, trees, colours, frame, and what helps to find things in
 // them. Brought up to date with what the passes over its tiles have found.
 #pragma once
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "cache/residency.h"
 #include "engine/changed_pixels.h"
 #include "engine/image.h"
 #include "engine/path_classes.h"
@@ -23,13 +25,15 @@ struct ShownSamples {
 class StoredImage {
  public:
   /// `atoms`: see atoms_of(); empty without atoms.
-  StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms, const RegionOptions& options);
+  StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms, const RegionOptions& options,
+              Residency& residency);
 
   [[nodiscard]] const Image& image() const { return image_; }
   [[nodiscard]] const std::vector<LightId>& lights() const { return lights_; }  // light order of the paths
   [[nodiscard]] const PathIndex& index() const { return index_; }
   [[nodiscard]] const PathClasses& classes() const { return classes_; }
   [[nodiscard]] const ImageRegions& regions() const { return regions_; }
+  [[nodiscard]] Residency& residency() { return residency_; }
   /// The image side of a search for paths. `rays`: after the change; outlives it, as does this.
   [[nodiscard]] PathSearch search(const RayScene& rays) const {
     return {rays, image_.paths, index_, lights_, image_.view.shadow_bits, classes_};
@@ -42,13 +46,23 @@ class StoredImage {
     atoms_.insert(atoms_.end(), atoms.begin() + std::ssize(atoms_), atoms.end());
   }
   /// After a change, perhaps of the node hierarchy. `scene`: in which the trees hold.
-  void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene);
+  void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene, ObjectLevels& objects);
   /// Requires: the trees hold in `scene`.
-  void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
+  void build_tunnels(const GrowScene& scene, ObjectLevels& objects);
 
-  /// Takes over new trees, an update a tile, and keeps the regions equal to what would be built from them. `scene`: in which
-  /// they hold. `lights_changed`: all samples have been packed anew, since the form of paths follows the light order.
-  void keep_trees(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
+  /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees.
+  void forget_hits(double share);
+  /// Takes over the hits and colours of an update, which has none any more. Tiles may be done at the same time; the
+  /// tile's paths are the old ones until keep_paths().
+  void keep_hits(TileUpdate& update);
+  /// Takes over the paths of updates whose hits have been kept, and keeps the regions equal to what would be built from
+  /// the trees. `scene`: in which they hold. `lights_changed`: all samples have been packed anew, since the form of
+  /// paths follows the light order.
+  void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, ObjectLevels& objects,
+                  bool lights_changed);
+  /// The objects that rays meet in those samples of some tiles whose hits are not kept and whose path `matters`.
+  [[nodiscard]] std::vector<ObjectId> objects_to_meet(std::span<const std::size_t> tiles,
+                                                      const std::function<bool(PathId)>& matters) const;
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
   void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
   /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
@@ -60,13 +74,16 @@ class StoredImage {
   [[nodiscard]] ClassOf class_of() const {
     return [this](PathId path) { return classes_.of(path); };
   }
+  void add_pieces();
+  void note_hits(std::size_t tile);
   void index_paths();
-  void classify_paths(const GrowScene& scene);
+  void classify_paths(const GrowScene& scene, ObjectLevels& objects);
   void count_segments(std::size_t tile);
-  void drop_unused_paths(const GrowScene& scene);
+  void drop_unused_paths(const GrowScene& scene, ObjectLevels& objects);
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
 
   Image image_;
+  Residency& residency_;
   std::vector<LightId> lights_;
   PathIndex index_;
   PathClasses classes_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cache/residency.h"
 #include "engine/sampling.h"
 #include "trace/probe.h"
 
@@ -16,12 +17,14 @@ class TileUpdater {
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
+        has_hits_(has_hits(trees_)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
         shader_(shader) {
     result_.tile = tile;
   }
 
   TileUpdate update(const TileWork& work) {
+    tests_all_ = work.tests_all;
     for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
     for_each_sample(rect_, p_.image.view, work.leaves,
                     [&](std::uint32_t sample, std::uint32_t leaf) { update_sample(sample, leaf); });
@@ -34,24 +37,26 @@ class TileUpdater {
     const PathId path = trees_.paths[sample];
     const std::uint8_t task = p_.tasks.of_path[path.index()];
     const Touches* touches = by_leaf_[leaf] != nullptr ? by_leaf_[leaf]->of(p_.classes.of(path)) : nullptr;
-    const bool tests_all = p_.change.rays.lights_changed || (p_.tunnel_test == nullptr && p_.change.touches_segments());
-    if (task == 0 && touches == nullptr && !tests_all) return;
+    if (task == 0 && touches == nullptr && !tests_all_) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
-    const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}),
-                            trees_.hits_of(sample).data()};
-    bool update = (task & kUpdateTree) != 0 || tests_all;
+    bool update = (task & kUpdateTree) != 0 || tests_all_;
+    const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr);
     // Where the last tree has changed, this one probably has, too: no use in asking first.
-    if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(*touches, primary, stored);
+    if (!update && touches != nullptr)
+      update = stored.hits == nullptr || last_changed_.test(leaf) || probe(*touches, primary, stored);
     if (!update && (task & kShade) == 0) return;
     const TreeBlock::Mark mark = block_.mark();
     bool changed = false;
     std::uint32_t root = 0;
-    if (update) {
-      const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &no_touches_;
+    if (update && stored.hits == nullptr) {
+      root = trace(primary, sample);
+      changed = true;
+    } else if (update) {
+      const Touches* tested = tests_all_ ? nullptr : touches != nullptr ? touches : &no_touches_;
       root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
       last_changed_.set(leaf, changed);
     } else {
-      root = expand_tree(p_.grow, primary, sample, stored, block_);
+      root = expand_tree(p_.grow, primary, sample, stored, block_, result_.counters);
     }
     if (p_.keeps_trees && (changed || p_.change.rays.lights_changed)) pack_sample(root, sample);
     if (!changed && (task & kShade) == 0) {
@@ -61,6 +66,26 @@ class TileUpdater {
     roots_.push_back(root);
     result_.shaded.push_back(sample);
     if (roots_.size() == kChunkSamples) flush();
+  }
+
+  /// A tree whose hits are not kept cannot be compared with the scene before a change: it is traced anew (null). Only
+  /// what a drag shows on top of the trees leaves them valid, so that their hits can be found first.
+  StoredTree stored_tree(PathId path, const SpawnedRay& primary, std::uint32_t sample, bool may_update) {
+    const PathCursor cursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits});
+    if (has_hits_) return {cursor, trees_.hits_of(sample).data()};
+    if (!may_update || p_.keeps_trees) return {cursor, nullptr};
+    found_.clear();
+    words_.clear();
+    found_hits_.clear();
+    const std::uint32_t root = expand_tree(p_.grow, primary, sample, {cursor, nullptr}, found_, result_.counters);
+    pack(found_, root, p_.grow.layout(), words_, found_hits_);
+    found_hits_.emplace_back();  // never empty
+    return {cursor, found_hits_.data()};
+  }
+  std::uint32_t trace(const SpawnedRay& primary, std::uint32_t sample) {
+    traced_.clear();
+    trace_trees(p_.grow, std::span(&primary, 1), sample, block_, traced_, result_.counters);
+    return traced_.front();
   }
 
   /// The tests of a tree that is then updated are counted there.
@@ -91,13 +116,16 @@ class TileUpdater {
   const UpdatePass& p_;
   const TileTrees& trees_;
   TileRect rect_;
+  bool has_hits_, tests_all_ = false;
   PrimaryRays primaries_;
   Shader& shader_;
   std::array<const LeafTouches*, kLeaves> by_leaf_{};
   const Touches no_touches_;
   Leaves last_changed_;  // leaves whose last updated tree has changed
   TreeBlock block_;
-  std::vector<std::uint32_t> roots_, words_;
+  std::vector<std::uint32_t> roots_, words_, traced_;
+  TreeBlock found_;
+  std::vector<Hit> found_hits_;
   TileUpdate result_;
 };
 
@@ -107,6 +135,7 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
   TileWork work;
   if (pass.change.rays.lights_changed || (pass.change.touches_segments() && pass.tunnel_test == nullptr)) {
     work.leaves.set();
+    work.tests_all = true;
     return work;
   }
   if (pass.known_leaves != nullptr) {
@@ -119,6 +148,12 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
   }
   work.leaves = work.by_path;
   if (pass.change.touches_segments() && pass.near_tiles[tile]) {
+    const auto lease = pass.residency.use(PieceKind::tunnels, tile);
+    if (pass.regions.tunnels(tile).empty()) {
+      work.leaves.set();
+      work.tests_all = true;
+      return work;
+    }
     find_touched_leaves(pass.regions.tunnels(tile), *pass.tunnel_test, work.touched, work.by_tunnels);
     for (const LeafTouches& leaf : work.touched) work.leaves.set(leaf.leaf);
   }
@@ -126,6 +161,7 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
 }
 
 TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<Shader>& shaders) {
+  const auto lease = pass.residency.use(PieceKind::ray_trees, tile);
   const auto shader = shaders.take([&] { return std::make_unique<Shader>(pass.grow.scene, pass.programs); });
   return TileUpdater(pass, tile, *shader).update(work);
 }

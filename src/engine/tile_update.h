@@ -11,12 +11,15 @@
 
 namespace relook {
 
+class Residency;
+
 /// Where to look in a tile.
 struct TileWork {
   Leaves leaves;                     // with samples that the change may reach
   Leaves by_path;                    // of these, what the paths tell
   std::vector<LeafTouches> touched;  // of these, what tunnels tell about their segments
   RegionCounters by_groups, by_tunnels;
+  bool tests_all = false;  // nothing is known about its segments
 };
 
 /// What became of the samples of one tile.
@@ -45,6 +48,7 @@ struct UpdatePass {
   const std::vector<bool>& near_tiles;                // with tunnels: those that the change may touch
   const std::vector<Leaves>* known_leaves = nullptr;  // by tile, those that paths tell; null: to be found
   ProgramTable& programs;
+  Residency& residency;
   bool keeps_trees = true;  // false: an intermediate frame of a drag
 };
 

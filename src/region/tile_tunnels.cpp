@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/byte_columns.h"
+
 namespace relook {
 namespace {
 
@@ -78,6 +80,23 @@ void TileTunnels::unite(std::uint32_t region, std::size_t most) {
       enclose(set.of(view.path), view.sections);
     }
   for (const Tunnel& united : set.tunnels()) append(united.path, united.sections);
+}
+
+Bytes TileTunnels::packed() const {
+  ByteColumns columns;
+  columns.append(first_);
+  columns.append(entries_);
+  columns.append(sections_);
+  return columns.take();
+}
+
+TileTunnels TileTunnels::unpacked(BytesView bytes) {
+  ByteColumnsReader columns(bytes);
+  TileTunnels tunnels;
+  columns.next(tunnels.first_);
+  columns.next(tunnels.entries_);
+  columns.next(tunnels.sections_);
+  return tunnels;
 }
 
 TileTunnels TileTunnels::rebuilt(const Leaves& changed, std::size_t most,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/files.h"
 #include "base/id.h"
 #include "region/quadtree.h"
 #include "region/tunnel.h"
@@ -51,6 +52,10 @@ class TileTunnels {
   [[nodiscard]] std::size_t tunnels() const { return entries_.size(); }
   [[nodiscard]] std::size_t bytes() const;
   bool operator==(const TileTunnels&) const = default;
+
+  /// A copy as plain bytes, for this process alone; and back.
+  [[nodiscard]] Bytes packed() const;
+  [[nodiscard]] static TileTunnels unpacked(BytesView bytes);
 
   /// The tile's tunnels after the trees of some leaves have changed: `leaf(index)` gives those of a changed leaf, all
   /// else is kept, regions above changed leaves are united anew. `*this` may be empty if all leaves are changed.

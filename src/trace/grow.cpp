@@ -1,24 +1,30 @@
 #include "trace/grow.h"
 
+#include <tuple>
+
 #include "base/error.h"
 #include "trace/grower.h"
 
 namespace relook {
 namespace {
 
+[[noreturn]] void refuse_trees() {
+  throw Error(ExitCode::damaged_cache, "", "", "stored ray trees do not fit the scene; preprocess again");
+}
+
 class Expander {
  public:
-  Expander(const GrowScene& grow, std::uint32_t sample, StoredTree stored, TreeBlock& block)
-      : grower_(grow, sample, block), stored_(stored) {}
+  Expander(const GrowScene& grow, std::uint32_t sample, StoredTree stored, TreeBlock& block, GrowCounters& counters)
+      : grower_(grow, sample, block), stored_(stored), counters_(counters) {}
 
   std::uint32_t expand(const SpawnedRay& ray, std::uint32_t parent) {
     const std::uint32_t index = grower_.append(ray, parent);
     const Hit* hits = nullptr;
     const PathNode node = take(stored_, hits);
     if (node.is_miss()) return index;
-    grower_.set_hit(index, node.object(), *hits);
+    grower_.set_hit(index, node.object(), hits != nullptr ? *hits : find_hit(node.object(), ray));
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
-    FilterReader filters(hits + 1);
+    FilterReader filters(hits + (hits != nullptr ? 1 : 0));
     ShadowSegment segment;
     for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
       const ShadowState state = shadow_state(node.lights, light);
@@ -28,22 +34,50 @@ class Expander {
       } else if (state == ShadowState::blocked) {
         grower_.set_blocked(index, light, entry.words);
       } else {
-        filters.next(entry.objects, grower_.filters_);
         grower_.gathers(index, light, segment);
+        if (hits != nullptr)
+          filters.next(entry.objects, grower_.filters_);
+        else
+          find_filters(entry.objects, segment);
         grower_.set_filters(index, light, segment, grower_.filters_);
       }
     }
     if (!grower_.grow().scene.object(node.object()).optics.spawns() && node.children() == 0) return index;
     const Spawned rays = grower_.spawned(index);
-    if (rays.mask != (node.flags & 0xFU))
-      throw Error(ExitCode::damaged_cache, "", "", "stored ray trees do not fit the scene; preprocess again");
+    if (rays.mask != (node.flags & 0xFU)) refuse_trees();
     grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
   }
 
  private:
+  Hit find_hit(ObjectId object, const SpawnedRay& ray) {
+    ++counters_.object_rays;
+    const Meeting meeting = Tracer::intersect(grower_.grow().objects->of(object), {ray.origin, ray.direction});
+    if (meeting.object.is_none()) refuse_trees();
+    return meeting.hit;
+  }
+
+  /// The crossings of a filtered segment, object by object, in their order along it.
+  void find_filters(std::span<const std::uint32_t> objects, const ShadowSegment& segment) {
+    crossings_.clear();
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (std::ranges::count(objects.first(i), objects[i]) > 0) continue;
+      ++counters_.object_rays;
+      const Ray ray{segment.origin, segment.direction, segment.t_max};
+      if (!Tracer::passes(grower_.grow().objects->of(ObjectId(objects[i])), ray, grower_.crossings_)) refuse_trees();
+      crossings_.insert(crossings_.end(), grower_.crossings_.begin(), grower_.crossings_.end());
+    }
+    std::ranges::sort(crossings_, {}, [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); });
+    if (!std::ranges::equal(crossings_, objects, {}, [](const Crossing& c) { return c.object.index(); }))
+      refuse_trees();
+    grower_.filters_.clear();
+    for (const Crossing& crossing : crossings_) grower_.filters_.push_back(filter_of(crossing));
+  }
+
   Grower grower_;
   StoredTree stored_;
+  GrowCounters& counters_;
+  std::vector<Crossing> crossings_;
 };
 
 }  // namespace
@@ -65,8 +99,9 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
 }
 
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
-                          TreeBlock& block) {
-  return Expander(grow, sample, stored, block).expand(primary, kNoNode);
+                          TreeBlock& block, GrowCounters& counters) {
+  if (stored.hits == nullptr) ++counters.trees_rebuilt;
+  return Expander(grow, sample, stored, block, counters).expand(primary, kNoNode);
 }
 
 }  // namespace relook

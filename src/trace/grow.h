@@ -1,10 +1,11 @@
-// Grows ray trees: by tracing against the whole scene, from stored paths and hits, or by updating what is stored after
-// a change of the scene (paper 2.2): all three give the same nodes for the same scene.
+// Grows ray trees: by tracing against the whole scene, from stored paths and hits, from paths alone, or by updating
+// what is stored after a change of the scene (paper 2.2): all give the same nodes for the same scene.
 #pragma once
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "trace/object_levels.h"
 #include "trace/path_cursor.h"
 #include "trace/touch.h"
 #include "trace/tracer.h"
@@ -16,6 +17,8 @@ struct GrowCounters {
   std::uint64_t ray_updates = 0;     // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;  // shadow segments traced against the whole scene
   std::uint64_t ray_tests = 0;       // stored segments tested against the selection
+  std::uint64_t object_rays = 0;     // rays and shadow segments against one known object
+  std::uint64_t trees_rebuilt = 0;   // whose hits these rays have found again
 };
 
 /// What all growing needs.
@@ -24,6 +27,7 @@ struct GrowScene {
   const Tracer::TopLevel* level = nullptr;  // the whole scene; null if nothing is traced
   std::uint32_t max_depth = 6;
   std::uint32_t shadow_bits = 0;  // of shadow counters; more than 0: the level is of a tracer that counts blockers
+  const ObjectLevels* objects = nullptr;  // for trees whose hits are not kept; null if there are none
 
   [[nodiscard]] PathLayout layout() const { return {scene.scene().light_order.size(), shadow_bits}; }
 };
@@ -35,12 +39,14 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
 /// A stored ray tree being walked.
 struct StoredTree {
   PathCursor cursor;
-  const Hit* hits;
+  const Hit* hits;  // null: not kept
 };
 
-/// Appends the ray tree of one sample from its path and hits. Requires: the scene is the one they were recorded in.
+/// Appends the ray tree of one sample from its path and hits. Hits that are not kept are found again among the objects
+/// that the path names (paper 4.1.2): `grow.objects` has been prepared for them. Requires: the scene is the one they
+/// were recorded in.
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
-                          TreeBlock& block);
+                          TreeBlock& block, GrowCounters& counters);
 
 /// What changed between the scene of the stored trees and the scene as it is now, in terms of rays.
 struct RayChange {

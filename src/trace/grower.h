@@ -198,7 +198,7 @@ class FilterReader {
 [[nodiscard]] inline PathNode take(StoredTree& stored, const Hit*& hits) {
   const PathNode node = stored.cursor.next();
   hits = stored.hits;
-  if (!node.is_miss()) stored.hits += 1 + node.filter_hits;
+  if (!node.is_miss() && hits != nullptr) stored.hits += 1 + node.filter_hits;
   return node;
 }
 

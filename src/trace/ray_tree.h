@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kTileSize = 64;
 /// lights, as in the path.
 struct TileTrees {
   std::vector<PathId> paths;             // [samples]
-  std::vector<std::uint32_t> first_hit;  // [samples + 1] into hits
+  std::vector<std::uint32_t> first_hit;  // [samples + 1] into hits; empty, as hits: not kept
   std::vector<Hit> hits;
 
   [[nodiscard]] std::span<const Hit> hits_of(std::size_t sample) const {

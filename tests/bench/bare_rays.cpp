@@ -28,13 +28,14 @@ TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile
   const GrowScene grow{ray_scene, nullptr, image.view.max_depth, image.view.shadow_bits};
   const PrimaryRays primaries(scene.camera, image.view);
   TileRays result;
-  TreeBlock block;
+  GrowCounters counters;
+TreeBlock block;
   for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
     const TileTrees& trees = image.trees[tile];
     const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), grow.layout()),
                             trees.hits_of(sample).data()};
     block.clear();
-    expand_tree(grow, primaries.ray(rect, sample), sample, stored, block);
+    expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
     for (const RayNode& node : block.nodes) {
       result.rays.push_back({node.ray.origin, node.ray.direction});
       for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light) {

@@ -1,0 +1,36 @@
+#include "cache/eviction.h"
+
+namespace relook {
+
+std::string_view policy_name(EvictionPolicy policy) {
+  switch (policy) {
+    case EvictionPolicy::weight:
+      return "weight";
+    case EvictionPolicy::lru:
+      return "lru";
+    case EvictionPolicy::size:
+      return "size";
+    case EvictionPolicy::gdsf:
+      return "gdsf";
+  }
+  return "";
+}
+
+double eviction_weight(EvictionPolicy policy, const PieceFacts& piece, std::uint64_t change) {
+  const auto bytes = static_cast<double>(piece.bytes);
+  switch (policy) {
+    case EvictionPolicy::weight: {
+      const auto age = static_cast<double>(1 + change - piece.last_use);
+      return piece.return_seconds * piece.surface_area / (bytes * age);
+    }
+    case EvictionPolicy::lru:
+      return static_cast<double>(piece.last_use);
+    case EvictionPolicy::size:
+      return 1 / bytes;
+    case EvictionPolicy::gdsf:
+      return piece.gdsf_inflation + static_cast<double>(piece.uses) * piece.return_seconds / bytes;
+  }
+  return 0;
+}
+
+}  // namespace relook

@@ -1,0 +1,223 @@
+#include "cache/residency.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+#include "base/error.h"
+#include "base/memory.h"
+
+namespace relook {
+namespace {
+
+std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
+
+std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + "M"; }
+
+}  // namespace
+
+std::string_view kind_name(PieceKind kind) {
+  switch (kind) {
+    case PieceKind::ray_trees:
+      return "ray_trees";
+    case PieceKind::sample_colors:
+      return "sample_colors";
+    case PieceKind::tunnels:
+      return "tunnels";
+  }
+  return "";
+}
+
+Residency::Residency(ResidencyOptions options) : options_(std::move(options)) {
+  if (is_limited() && !options_.spill_folder.empty() && options_.disk_bytes > 0)
+    spill_ = std::make_unique<SpillFile>(options_.spill_folder, options_.disk_bytes);
+}
+
+void Residency::add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler) {
+  const std::lock_guard lock(mutex_);
+  for (Piece& p : kinds_[index_of(kind)].pieces) {
+    if (p.state == State::resident) resident_bytes_ -= p.facts.bytes;
+    free_copy(p);
+  }
+  candidates_.clear();
+  kinds_[index_of(kind)] = {std::move(handler), std::vector<Piece>(tiles)};
+  missing_[index_of(kind)] = tiles;
+}
+
+void Residency::set_others(std::function<std::uint64_t()> bytes, std::function<void(std::vector<Victim>&)> list) {
+  others_bytes_ = std::move(bytes);
+  list_others_ = std::move(list);
+}
+
+void Residency::free_copy(Piece& piece) {
+  if (piece.copy) spill_->free(*piece.copy);
+  piece.copy.reset();
+}
+
+void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds,
+                    double surface_area) {
+  if (!is_watched()) return;
+  const std::lock_guard lock(mutex_);
+  Piece& p = piece(kind, tile);
+  if (p.state == State::resident) resident_bytes_ -= p.facts.bytes;
+  if (p.state == State::missing) --missing_[index_of(kind)];
+  free_copy(p);
+  p.state = State::resident;
+  p.facts.bytes = std::max<std::uint64_t>(bytes, 1);
+  p.facts.surface_area = surface_area;
+  p.rebuild_seconds = rebuild_seconds;
+  resident_bytes_ += p.facts.bytes;
+  ++p.pins;
+  make_room_locked(0);
+  --p.pins;
+}
+
+Residency::Lease Residency::use(PieceKind kind, std::size_t tile) {
+  if (!is_watched()) return {};
+  std::unique_lock lock(mutex_);
+  Piece& p = piece(kind, tile);
+  ++p.pins;
+  touch(kind, tile);
+  if (p.state == State::spilled) {
+    make_room_locked(p.facts.bytes);
+    resident_bytes_ += p.facts.bytes;
+    const SpillFile::Extent extent = *p.copy;
+    lock.unlock();
+    kinds_[index_of(kind)].handler.unpack(tile, spill_->read(extent));
+    lock.lock();
+    p.state = State::resident;
+    ++counts_.reloaded[index_of(kind)];
+  }
+  return {this, kind, tile};
+}
+
+void Residency::release(PieceKind kind, std::size_t tile) {
+  const std::lock_guard lock(mutex_);
+  --piece(kind, tile).pins;
+}
+
+void Residency::touch(PieceKind kind, std::size_t tile) {
+  PieceFacts& facts = piece(kind, tile).facts;
+  if (facts.last_use == change_ && facts.uses > 0) return;
+  facts.last_use = change_;
+  facts.gdsf_inflation = gdsf_inflation_;
+  ++facts.uses;
+  if (!options_.logs_accesses) return;
+  char line[160];
+  std::snprintf(line, sizeof line, "%llu %s %zu %llu %.6g %.6g\n", static_cast<unsigned long long>(change_),
+                std::string(kind_name(kind)).c_str(), tile, static_cast<unsigned long long>(facts.bytes),
+                piece(kind, tile).rebuild_seconds, facts.surface_area);
+  log_ += line;
+}
+
+void Residency::forget(PieceKind kind, std::size_t tile) {
+  const std::lock_guard lock(mutex_);
+  Piece& p = piece(kind, tile);
+  require(kinds_[index_of(kind)].handler.may_be_missing, "only what can be worked out again is forgotten");
+  if (p.state == State::resident) {
+    resident_bytes_ -= p.facts.bytes;
+    kinds_[index_of(kind)].handler.drop(tile);
+  }
+  if (p.state != State::missing) ++missing_[index_of(kind)];
+  free_copy(p);
+  p.state = State::missing;
+}
+
+bool Residency::is_missing(PieceKind kind, std::size_t tile) const {
+  if (!is_watched()) return false;
+  const std::lock_guard lock(mutex_);
+  return kinds_[index_of(kind)].pieces[tile].state == State::missing;
+}
+
+PieceCounts Residency::take_counts() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(counts_, {});
+}
+
+void Residency::measure_outside() {
+  const std::uint64_t resident = resident_set_bytes();
+  const std::uint64_t known = resident_bytes_ + (others_bytes_ ? others_bytes_() : 0);
+  outside_bytes_ = std::max(outside_bytes_, resident > known ? resident - known : 0);
+}
+
+void Residency::begin_change() {
+  if (!is_watched()) return;
+  const std::lock_guard lock(mutex_);
+  ++change_;
+  are_candidates_fresh_ = false;
+  if (!is_limited()) return;
+  measure_outside();
+  if (!make_room_locked(0))
+    throw ResourceError("--memory", "this replay needs at least " + megabytes(outside_bytes_ + resident_bytes_ +
+                                                                              (others_bytes_ ? others_bytes_() : 0)));
+}
+
+bool Residency::make_room(std::uint64_t bytes) {
+  if (!is_limited()) return true;
+  const std::lock_guard lock(mutex_);
+  return make_room_locked(bytes);
+}
+
+bool Residency::make_room_locked(std::uint64_t bytes) {
+  if (!is_limited()) return true;
+  measure_outside();
+  const auto fits = [&] {
+    return outside_bytes_ + resident_bytes_ + (others_bytes_ ? others_bytes_() : 0) + bytes <= *options_.memory_bytes;
+  };
+  for (bool is_last_list = false; !fits();) {
+    if (candidates_.empty() || !are_candidates_fresh_) {
+      if (is_last_list) return false;
+      list_candidates();
+      is_last_list = true;
+      if (candidates_.empty()) return false;
+    }
+    const Candidate next = candidates_.back();
+    candidates_.pop_back();
+    gdsf_inflation_ = std::max(gdsf_inflation_, options_.policy == EvictionPolicy::gdsf ? next.weight : 0.0);
+    if (next.victim < victims_.size())
+      counts_.others_evicted += victims_[next.victim].drop();
+    else
+      evict(next.kind, next.tile);
+  }
+  return true;
+}
+
+void Residency::list_candidates() {
+  candidates_.clear();
+  victims_.clear();
+  for (std::size_t k = 0; k < kPieceKinds; ++k)
+    for (std::size_t tile = 0; tile < kinds_[k].pieces.size(); ++tile) {
+      Piece& p = kinds_[k].pieces[tile];
+      if (p.state != State::resident || p.pins > 0) continue;
+      p.facts.return_seconds = spill_ ? disk_seconds(p.facts.bytes) * (p.copy ? 1 : 2) : p.rebuild_seconds;
+      candidates_.push_back(
+          {eviction_weight(options_.policy, p.facts, change_), static_cast<PieceKind>(k), tile, ~std::size_t{0}});
+    }
+  if (list_others_) list_others_(victims_);
+  for (std::size_t i = 0; i < victims_.size(); ++i)
+    candidates_.push_back({victims_[i].weight, PieceKind::ray_trees, 0, i});
+  std::ranges::sort(candidates_, std::greater(), &Candidate::weight);
+  are_candidates_fresh_ = true;
+}
+
+bool Residency::evict(PieceKind kind, std::size_t tile) {
+  Piece& p = piece(kind, tile);
+  const PieceHandler& handler = kinds_[index_of(kind)].handler;
+  if (p.state != State::resident || p.pins > 0) return false;
+  if (!p.copy && spill_) {
+    const auto start = std::chrono::steady_clock::now();
+    p.copy = spill_->write(handler.pack(tile));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_per_byte_ += 0.1 * (seconds / static_cast<double>(p.facts.bytes) - seconds_per_byte_);
+  }
+  if (!p.copy && !handler.may_be_missing) return false;
+  handler.drop(tile);
+  p.state = p.copy ? State::spilled : State::missing;
+  if (!p.copy) ++missing_[index_of(kind)];
+  resident_bytes_ -= p.facts.bytes;
+  ++counts_.evicted[index_of(kind)];
+  return true;
+}
+
+}  // namespace relook

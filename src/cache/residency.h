@@ -1,0 +1,160 @@
+// What stays in memory under a budget (paper 4.1, 4.3): pieces of an image, one for each kind and tile, are resident,
+// on disk in a spill file, or missing and to be worked out again by whoever needs them. The lowest weight leaves first.
+// Invariant: resident pieces and all else in the process keep within the budget, as far as pieces that are in use
+// allow.
+#pragma once
+#include <array>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cache/eviction.h"
+#include "cache/spill_file.h"
+
+namespace relook {
+
+enum class PieceKind : std::uint8_t { ray_trees, sample_colors, tunnels };
+inline constexpr std::size_t kPieceKinds = 3;
+[[nodiscard]] std::string_view kind_name(PieceKind kind);
+
+struct ResidencyOptions {
+  std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
+  EvictionPolicy policy = EvictionPolicy::weight;
+  std::filesystem::path spill_folder;  // "": nothing is spilled
+  std::uint64_t disk_bytes = ~std::uint64_t{0};
+  bool logs_accesses = false;
+  bool tracks_pieces = false;  // without a limit, too: pieces may be missing
+};
+
+/// How the owner's data of one kind come and go. The functions are called for one tile at a time, those for different
+/// tiles from different threads.
+struct PieceHandler {
+  std::function<Bytes(std::size_t tile)> pack;
+  std::function<void(std::size_t tile, BytesView)> unpack;
+  std::function<void(std::size_t tile)> drop;
+  bool may_be_missing = false;  // the owner can do without a copy
+};
+
+struct PieceCounts {
+  std::array<std::uint64_t, kPieceKinds> evicted{}, reloaded{};
+  std::uint64_t others_evicted = 0;
+};
+
+/// Something outside of Residency that could leave memory, too.
+struct Victim {
+  double weight = 0;
+  std::function<std::uint64_t()> drop;  // returns how many it stands for, as PieceCounts counts
+};
+
+class Residency {
+ public:
+  /// Throws IoError if the spill folder cannot hold a file.
+  explicit Residency(ResidencyOptions options);
+
+  /// While it lives, the piece stays where it is.
+  class Lease {
+   public:
+    Lease() = default;
+    Lease(Residency* residency, PieceKind kind, std::size_t tile) : residency_(residency), kind_(kind), tile_(tile) {}
+    Lease(Lease&& other) noexcept
+        : residency_(std::exchange(other.residency_, nullptr)), kind_(other.kind_), tile_(other.tile_) {}
+    Lease& operator=(Lease&&) = delete;
+    ~Lease() {
+      if (residency_ != nullptr) residency_->release(kind_, tile_);
+    }
+
+   private:
+    Residency* residency_ = nullptr;
+    PieceKind kind_ = PieceKind::ray_trees;
+    std::size_t tile_ = 0;
+  };
+
+  /// All pieces of the kind are missing then, whatever was there before.
+  void add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler);
+  /// `bytes`: of what `list` offers. Not called while set otherwise.
+  void set_others(std::function<std::uint64_t()> bytes, std::function<void(std::vector<Victim>&)> list);
+
+  [[nodiscard]] EvictionPolicy policy() const { return options_.policy; }
+  [[nodiscard]] bool is_limited() const { return options_.memory_bytes.has_value(); }
+  /// Does anyone care about sizes, uses and what is missing?
+  [[nodiscard]] bool is_watched() const { return is_limited() || options_.logs_accesses || options_.tracks_pieces; }
+
+  /// The piece has new content and is resident. May evict other pieces. `rebuild_seconds`: measured or estimated from
+  /// what has been measured.
+  void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds, double surface_area = 1);
+  /// Makes the piece resident unless it is missing, and keeps it so.
+  [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
+  /// Drops a piece that may be missing, with its copy.
+  void forget(PieceKind kind, std::size_t tile);
+  [[nodiscard]] bool is_missing(PieceKind kind, std::size_t tile) const;
+  /// Any piece of the kind?
+  [[nodiscard]] bool any_missing(PieceKind kind) const { return missing_[static_cast<std::size_t>(kind)] > 0; }
+
+  /// A new change begins: ages advance, memory outside of pieces is measured, what is over the budget leaves. Throws
+  /// ResourceError that names the floor if the budget cannot be kept.
+  void begin_change();
+  /// Evicts until `bytes` more fit, as far as possible; do they?
+  bool make_room(std::uint64_t bytes);
+
+  /// What has happened since the last call.
+  [[nodiscard]] PieceCounts take_counts();
+  [[nodiscard]] std::uint64_t spilled_bytes() const { return spill_ ? spill_->bytes() : 0; }
+  /// One line an access, for replaying policies: change, kind, tile, bytes, seconds to have it back, surface area.
+  [[nodiscard]] const std::string& access_log() const { return log_; }
+
+ private:
+  enum class State : std::uint8_t { missing, spilled, resident };
+  struct Piece {
+    State state = State::missing;
+    PieceFacts facts;
+    double rebuild_seconds = 0;
+    std::uint32_t pins = 0;
+    std::optional<SpillFile::Extent> copy;
+  };
+  struct Kind {
+    PieceHandler handler;
+    std::vector<Piece> pieces;  // by tile
+  };
+  struct Candidate {
+    double weight;
+    PieceKind kind;
+    std::size_t tile;    // of a piece
+    std::size_t victim;  // or index into victims_
+  };
+
+  [[nodiscard]] Piece& piece(PieceKind kind, std::size_t tile) {
+    return kinds_[static_cast<std::size_t>(kind)].pieces[tile];
+  }
+  void release(PieceKind kind, std::size_t tile);
+  void touch(PieceKind kind, std::size_t tile);
+  void measure_outside();
+  bool make_room_locked(std::uint64_t bytes);
+  void list_candidates();
+  bool evict(PieceKind kind, std::size_t tile);
+  [[nodiscard]] double disk_seconds(std::uint64_t bytes) const {
+    return static_cast<double>(bytes) * seconds_per_byte_;
+  }
+  void free_copy(Piece& piece);
+
+  ResidencyOptions options_;
+  std::unique_ptr<SpillFile> spill_;
+  std::array<Kind, kPieceKinds> kinds_;
+  std::array<std::uint64_t, kPieceKinds> missing_{};
+  std::function<std::uint64_t()> others_bytes_;
+  std::function<void(std::vector<Victim>&)> list_others_;
+  mutable std::mutex mutex_;
+  std::uint64_t change_ = 0, resident_bytes_ = 0;
+  std::uint64_t outside_bytes_ = 0;  // the most that the process has held beside pieces
+  double gdsf_inflation_ = 0;
+  double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
+  std::vector<Candidate> candidates_;  // the next to leave last; made when needed, for one change
+  std::vector<Victim> victims_;
+  bool are_candidates_fresh_ = false;
+  PieceCounts counts_;
+  std::string log_;
+};
+
+}  // namespace relook
