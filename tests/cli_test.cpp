@@ -321,6 +321,29 @@ Frame with_another_tile(const Frame& frame, std::size_t tile) {
   return other;
 }
 
+TEST_F(Cli, budgets_change_no_frame_and_one_below_the_floor_is_refused) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(folder_ / "j.json", kJournal);
+  const auto replay = [&](const std::string& run, std::vector<std::string> options) {
+    options.insert(options.begin(), {"replay", at("c"), at("j.json"), "-o", at(run), "--quiet"});
+    return relook(options);
+  };
+  ASSERT_EQ(replay("free", {"--access-log", at("log")}).exit_code, 0);
+  const Json expected = read_json(folder_ / "free/report.json").at("frames");
+  EXPECT_TRUE(text_of(read_file(folder_ / "log")).starts_with("1 "));
+  const std::vector<std::vector<std::string>> budgets{{"--ray-trees", "0"},
+                                                      {"--ray-trees", "10", "--color-trees", "1", "--tunnels", "2"},
+                                                      {"--memory", "2G", "--policy", "gdsf"},
+                                                      {"--memory", "2G", "--disk", "0"}};
+  for (std::size_t i = 0; i < budgets.size(); ++i) {
+    const std::string run = "run" + std::to_string(i);
+    ASSERT_EQ(replay(run, budgets[i]).exit_code, 0) << i;
+    EXPECT_EQ(read_json(folder_ / run / "report.json").at("frames"), expected) << i;
+  }
+  expect_error(replay("small", {"--memory", "1M"}), 4, "--memory: this replay needs at least");
+  expect_error(replay("odd", {"--policy", "best"}), 1, "--policy");
+}
+
 TEST(Verify, a_share_of_the_tiles_reaches_each_tile_in_some_step) {
   Frame frame;
   frame.width = frame.height = 256;

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
-#include <random>
 
 #include "base/parallel.h"
 #include "engine/render.h"
 #include "engine/replay.h"
+#include "random_changes.h"
 #include "region_checks.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
@@ -18,192 +17,6 @@ namespace relook {
 namespace {
 
 constexpr std::size_t kSteps = 200;
-
-std::uint64_t seed_of_run() {
-  const char* given = std::getenv("RELOOK_SEED");
-  return given != nullptr ? std::strtoull(given, nullptr, 10) : 1996;
-}
-
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
-  /// [0, count)
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
-  bool chance(double share) { return between(0, 1) < share; }
-  /// On a grid of 1/64, so that JSON and float agree.
-  double between(double low, double high) {
-    const double t = static_cast<double>(below(65)) / 64;
-    return low + (high - low) * t;
-  }
-  template <class T>
-  const T& one_of(const std::vector<T>& choices) {
-    return choices[below(choices.size())];
-  }
-  Json color() { return {between(0, 1), between(0, 1), between(0, 1)}; }
-
- private:
-  std::mt19937_64 engine_;
-};
-
-/// An edit and what undoes it.
-struct Change {
-  std::vector<Json> forward, backward;  // operations, in order
-
-  /// Sets a member that may or may not exist.
-  void set(const Json& look, const std::string& pointer, Json value) {
-    const Json::json_pointer at(pointer);
-    if (look.contains(at))
-      undo_first({{"op", "add"}, {"path", pointer}, {"value", look.at(at)}});
-    else
-      undo_first({{"op", "remove"}, {"path", pointer}});
-    forward.push_back({{"op", "add"}, {"path", pointer}, {"value", std::move(value)}});
-  }
-  void remove(const Json& look, const std::string& pointer) {
-    undo_first({{"op", "add"}, {"path", pointer}, {"value", look.at(Json::json_pointer(pointer))}});
-    forward.push_back({{"op", "remove"}, {"path", pointer}});
-  }
-
- private:
-  void undo_first(Json operation) { backward.insert(backward.begin(), std::move(operation)); }
-};
-
-const std::vector<std::string> kMaterials = {"Matte", "Mirror", "Glass", "Ground"};
-const std::vector<std::string> kImages = {"PictureImage", "SecondImage", "BumpImage", "LeafImage", "VeilImage"};
-
-void change_color(Change& change, const Json& look, Dice& dice) {
-  const std::string material = "/materials/" + dice.one_of(kMaterials);
-  switch (dice.below(12)) {
-    case 0: {
-      Json color = dice.color();
-      color.push_back(dice.between(0.2, 1));
-      return change.set(look, material + "/pbrMetallicRoughness/baseColorFactor", color);
-    }
-    case 1:
-      return change.set(look, material + "/pbrMetallicRoughness/metallicFactor", dice.between(0, 1));
-    case 2:
-      return change.set(look, material + "/emissiveFactor", dice.color());
-    case 3:
-      return change.set(look, material + "/extensions/KHR_materials_sheen/sheenColorFactor", dice.color());
-    case 4:
-      return change.set(look, "/lights/Lamp/intensity", dice.between(0, 80));
-    case 5:
-      return change.set(look, "/lights/Lamp/color", dice.color());
-    case 6:
-      return change.set(look, "/scene/extras/relook/ambient", dice.color());
-    case 7:
-      return change.set(look, "/scene/extras/relook/environment/color", dice.color());
-    case 8:
-      return change.set(look, "/textures/Marble/extras/relook/procedural/kind",
-                        dice.one_of(std::vector<std::string>{"marble", "wood", "checker", "noise"}));
-    case 9:
-      return change.set(look, "/textures/Marble/extras/relook/procedural/scale", dice.between(0.5, 4));
-    case 10:
-      return change.set(look, "/textures/Picture/source", dice.one_of(kImages));
-    default:
-      return change.set(look, material + "/extras/relook/diffuse", dice.color());
-  }
-}
-
-void change_optics(Change& change, const Json& look, Dice& dice) {
-  const std::string material = "/materials/" + dice.one_of(kMaterials);
-  const auto weight = [&] { return dice.chance(0.4) ? 0.0 : dice.between(0, 1); };
-  const Json bumps = {{"index", "Bumps"}, {"scale", dice.between(0, 1)}};
-  switch (dice.below(11)) {
-    case 0:
-      return change.set(look, material + "/pbrMetallicRoughness/roughnessFactor", dice.between(0, 0.5));
-    case 1:
-      return change.set(look, material + "/extensions/KHR_materials_transmission/transmissionFactor", weight());
-    case 2:
-      return change.set(look, material + "/extensions/KHR_materials_volume/thicknessFactor", weight());
-    case 3:
-      return change.set(look, material + "/extensions/KHR_materials_ior/ior", dice.between(1, 2.5));
-    case 4:
-      return change.set(look, material + "/extensions/KHR_materials_clearcoat/clearcoatFactor", weight());
-    case 5:
-      return change.set(look, material + "/normalTexture", bumps);
-    case 6:
-      return change.set(look, material + "/extras/relook/model",
-                        dice.one_of(std::vector<std::string>{"metallic-roughness", "blinn-phong", "unlit"}));
-    case 7:
-      return change.set(look, material + "/extras/relook/reflection", weight());
-    case 8:
-      return change.set(look, material + "/extras/relook/refraction", weight());
-    case 9:
-      return change.set(look, material + "/extras/relook/transparency", weight());
-    default:
-      return change.set(look, material + "/extensions/KHR_materials_specular/specularFactor", weight());
-  }
-}
-
-void change_geometry(Change& change, const Json& look, Dice& dice) {
-  const std::string material = "/materials/" + dice.one_of(kMaterials);
-  const std::string ball = dice.one_of(std::vector<std::string>{"Ball", "MirrorBall", "GlassBall"});
-  const std::string extra = "/nodes/Extra" + std::to_string(dice.below(4));
-  const Json place = {dice.between(-1.5, 1.5), dice.between(0.3, 1.2), dice.between(-1, 1.5)};
-  switch (dice.below(9)) {
-    case 0:
-      return change.set(look, "/nodes/" + ball + "/translation", place);
-    case 1:
-      return change.set(look, "/nodes/" + ball + "/scale", {dice.between(0.5, 1.3), dice.between(-1, -0.5), 1});
-    case 2:
-      return change.set(look, "/nodes/" + ball + "/extensions/KHR_node_visibility/visible", dice.chance(0.6));
-    case 3:
-      return change.set(look, "/nodes/Lamp/translation", {dice.between(-3, 3), dice.between(2, 5), dice.between(0, 4)});
-    case 4: {
-      if (look.contains(Json::json_pointer(extra))) return change.remove(look, extra);
-      if (dice.chance(0.3))
-        return change.set(look, extra,
-                          {{"translation", place}, {"extensions", {{"KHR_lights_punctual", {{"light", "Lamp"}}}}}});
-      if (dice.chance(0.4)) {  // the same surface in the same place: ties
-        const Json& twin = look.at(Json::json_pointer("/nodes/" + ball));
-        return change.set(look, extra,
-                          {{"mesh", ball},
-                           {"translation", twin.at("translation")},
-                           {"rotation", twin.at("rotation")},
-                           {"scale", twin.at("scale")}});
-      }
-      return change.set(look, extra, {{"mesh", ball}, {"translation", place}, {"scale", {0.5, 0.5, 0.5}}});
-    }
-    case 5: {
-      const std::string displacement = "/nodes/Ball/extras/relook/displacement";
-      if (look.contains(Json::json_pointer(displacement)) && dice.chance(0.5)) return change.remove(look, displacement);
-      if (!look.contains(Json::json_pointer("/nodes/Ball/extras/relook")))
-        change.set(look, "/nodes/Ball/extras", {{"relook", Json::object()}});
-      return change.set(look, displacement, {{"texture", "Picture"}, {"scale", dice.between(-0.2, 0.2)}});
-    }
-    case 6:
-      return change.set(look, "/meshes/" + ball + "/primitives/0/material", dice.one_of(kMaterials));
-    case 7:
-      return change.set(look, material + "/alphaMode",
-                        dice.one_of(std::vector<std::string>{"OPAQUE", "MASK", "BLEND"}));
-    default:
-      return change.set(look, material + "/pbrMetallicRoughness/baseColorTexture",
-                        {{"index", dice.one_of(std::vector<std::string>{"Picture", "Leaves", "Veil", "Marble"})}});
-  }
-}
-
-/// One to three changes of any kind in one edit; no two of the same place.
-Change random_change(const Json& look, Dice& dice) {
-  Change change;
-  const std::size_t count = dice.chance(0.7) ? 1 : 2 + dice.below(2);
-  for (std::size_t i = 0; i < count; ++i) {
-    Change next;
-    const double kind = dice.between(0, 1);
-    if (kind < 0.35)
-      change_color(next, look, dice);
-    else if (kind < 0.6)
-      change_optics(next, look, dice);
-    else
-      change_geometry(next, look, dice);
-    const auto touches = [&](const Json& other) { return other["path"] == next.forward.front()["path"]; };
-    if (std::any_of(change.forward.begin(), change.forward.end(), touches)) continue;
-    change.forward.insert(change.forward.end(), next.forward.begin(), next.forward.end());
-    change.backward.insert(change.backward.begin(), next.backward.begin(), next.backward.end());
-  }
-  return change;
-}
-
-Edit edit_of_list(const std::vector<Json>& operations) { return edit_of(Json(operations)); }
 
 struct RandomCase {
   TestScene scene;
@@ -225,12 +38,6 @@ class RandomJournal : public testing::TestWithParam<RandomCase> {
 std::string random_case_name(const testing::TestParamInfo<RandomCase>& info) {
   return std::string(test_scene_name(info.param.scene)) + "_" + std::to_string(info.param.samples) + "_samples_" +
          std::to_string(info.param.threads) + "_threads_" + std::to_string(info.param.shadow_bits) + "_bits";
-}
-
-Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions) {
-  SceneState state = view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
-  Image image = preprocessed(state.scene(), view);
-  return Replayer(std::move(state), std::move(image), regions);
 }
 
 RegionOptions random_regions(Dice& dice) {
@@ -273,19 +80,6 @@ std::vector<Json> with_other_values(const std::vector<Json>& operations, Dice& d
     others.push_back(std::move(operation));
   }
   return others;
-}
-
-/// One frame of a drag: something that a node's selection can do, now and then to its light.
-Change random_movement(const Json& look, const std::string& node, Dice& dice) {
-  Change change;
-  const std::string pointer = "/nodes/" + node;
-  if (dice.chance(0.15))
-    change.set(look, pointer + "/extensions/KHR_node_visibility/visible", dice.chance(0.5));
-  else if (dice.chance(0.3))
-    change.set(look, pointer + "/scale", {dice.between(0.5, 1.3), dice.between(0.5, 1), 1});
-  else
-    change.set(look, pointer + "/translation", {dice.between(-1.5, 1.5), dice.between(0.3, 3), dice.between(-1, 1.5)});
-  return change;
 }
 
 /// A drag of several frames, of one node after the other; then the release.

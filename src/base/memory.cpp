@@ -21,10 +21,6 @@ std::uint64_t resident_set_bytes() {
   return std::strtoull(rest, nullptr, 10) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
 }
 
-void return_freed_memory() {
-  constexpr int kBytes = 16 << 10;  // the size of a tile's smaller pieces
-  mallopt(M_MMAP_THRESHOLD, kBytes);
-  mallopt(M_TRIM_THRESHOLD, kBytes);
-}
+void trim_allocator() { malloc_trim(0); }
 
 }  // namespace relook

@@ -7,8 +7,7 @@ namespace relook {
 /// The resident set now.
 [[nodiscard]] std::uint64_t resident_set_bytes();
 
-/// Makes blocks of 16 KB and more leave the resident set when they are freed: for a process that has to keep within a
-/// budget. Costs time at each allocation. Call before other work.
-void return_freed_memory();
+/// Gives back what is free inside of the allocator's own blocks.
+void trim_allocator();
 
 }  // namespace relook

@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <memory>
@@ -72,5 +73,7 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), run, context);
   after.take_over();
 }
+
+void run_isolated(const std::function<void()>& work) { tbb::this_task_arena::isolate(work); }
 
 }  // namespace relook

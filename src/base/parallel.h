@@ -18,4 +18,8 @@ void set_float_mode();
 /// a body is rethrown here.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body, std::size_t grain = 1);
 
+/// Runs `work`, whose own parallel loops this thread waits for without taking on anything else: what is locked around it
+/// stays safe from other bodies of a parallel_for that this one runs in.
+void run_isolated(const std::function<void()>& work);
+
 }  // namespace relook

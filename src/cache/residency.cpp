@@ -6,14 +6,17 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/memory.h"
 
 namespace relook {
 namespace {
 
 std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 
-std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + 999'999) / 1'000'000) + "M"; }
+/// Of the allocator in one change: each takes some milliseconds.
+constexpr std::uint32_t kMostTrims = 32;
+
+/// As the command line reads it, rounded up.
+std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1U << 20) - 1) >> 20) + "M"; }
 
 }  // namespace
 
@@ -42,7 +45,6 @@ void Residency::add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler
   }
   candidates_.clear();
   kinds_[index_of(kind)] = {std::move(handler), std::vector<Piece>(tiles)};
-  missing_[index_of(kind)] = tiles;
 }
 
 void Residency::set_others(std::function<std::uint64_t()> bytes, std::function<void(std::vector<Victim>&)> list) {
@@ -61,7 +63,6 @@ void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, doubl
   const std::lock_guard lock(mutex_);
   Piece& p = piece(kind, tile);
   if (p.state == State::resident) resident_bytes_ -= p.facts.bytes;
-  if (p.state == State::missing) --missing_[index_of(kind)];
   free_copy(p);
   p.state = State::resident;
   p.facts.bytes = std::max<std::uint64_t>(bytes, 1);
@@ -119,15 +120,8 @@ void Residency::forget(PieceKind kind, std::size_t tile) {
     resident_bytes_ -= p.facts.bytes;
     kinds_[index_of(kind)].handler.drop(tile);
   }
-  if (p.state != State::missing) ++missing_[index_of(kind)];
   free_copy(p);
   p.state = State::missing;
-}
-
-bool Residency::is_missing(PieceKind kind, std::size_t tile) const {
-  if (!is_watched()) return false;
-  const std::lock_guard lock(mutex_);
-  return kinds_[index_of(kind)].pieces[tile].state == State::missing;
 }
 
 PieceCounts Residency::take_counts() {
@@ -135,17 +129,31 @@ PieceCounts Residency::take_counts() {
   return std::exchange(counts_, {});
 }
 
+std::uint64_t Residency::known_bytes() const { return resident_bytes_ + (others_bytes_ ? others_bytes_() : 0); }
+
+bool Residency::fits(std::uint64_t bytes) const {
+  return outside_bytes_ + known_bytes() + bytes <= *options_.memory_bytes;
+}
+
 void Residency::measure_outside() {
-  const std::uint64_t resident = resident_set_bytes();
-  const std::uint64_t known = resident_bytes_ + (others_bytes_ ? others_bytes_() : 0);
-  outside_bytes_ = std::max(outside_bytes_, resident > known ? resident - known : 0);
+  const auto measured = [this] {
+    const std::uint64_t resident = options_.process_bytes(), known = known_bytes();
+    return std::max(outside_bytes_, resident > known ? resident - known : 0);
+  };
+  const std::uint64_t before = std::exchange(outside_bytes_, measured());
+  if (outside_bytes_ == before || fits(0) || trims_left_ == 0) return;
+  --trims_left_;
+  trim_allocator();
+  outside_bytes_ = before;
+  outside_bytes_ = measured();
 }
 
 void Residency::begin_change() {
   if (!is_watched()) return;
   const std::lock_guard lock(mutex_);
   ++change_;
-  are_candidates_fresh_ = false;
+  candidates_.clear();
+  trims_left_ = kMostTrims;
   if (!is_limited()) return;
   measure_outside();
   if (!make_room_locked(0))
@@ -162,19 +170,15 @@ bool Residency::make_room(std::uint64_t bytes) {
 bool Residency::make_room_locked(std::uint64_t bytes) {
   if (!is_limited()) return true;
   measure_outside();
-  const auto fits = [&] {
-    return outside_bytes_ + resident_bytes_ + (others_bytes_ ? others_bytes_() : 0) + bytes <= *options_.memory_bytes;
-  };
-  for (bool is_last_list = false; !fits();) {
-    if (candidates_.empty() || !are_candidates_fresh_) {
-      if (is_last_list) return false;
+  for (bool is_listed = false; !fits(bytes);) {
+    if (candidates_.empty()) {
+      if (std::exchange(is_listed, true)) return false;
       list_candidates();
-      is_last_list = true;
-      if (candidates_.empty()) return false;
+      continue;
     }
     const Candidate next = candidates_.back();
     candidates_.pop_back();
-    gdsf_inflation_ = std::max(gdsf_inflation_, options_.policy == EvictionPolicy::gdsf ? next.weight : 0.0);
+    if (options_.policy == EvictionPolicy::gdsf) gdsf_inflation_ = std::max(gdsf_inflation_, next.weight);
     if (next.victim < victims_.size())
       counts_.others_evicted += victims_[next.victim].drop();
     else
@@ -198,7 +202,6 @@ void Residency::list_candidates() {
   for (std::size_t i = 0; i < victims_.size(); ++i)
     candidates_.push_back({victims_[i].weight, PieceKind::ray_trees, 0, i});
   std::ranges::sort(candidates_, std::greater(), &Candidate::weight);
-  are_candidates_fresh_ = true;
 }
 
 bool Residency::evict(PieceKind kind, std::size_t tile) {
@@ -214,7 +217,6 @@ bool Residency::evict(PieceKind kind, std::size_t tile) {
   if (!p.copy && !handler.may_be_missing) return false;
   handler.drop(tile);
   p.state = p.copy ? State::spilled : State::missing;
-  if (!p.copy) ++missing_[index_of(kind)];
   resident_bytes_ -= p.facts.bytes;
   ++counts_.evicted[index_of(kind)];
   return true;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory.h"
 #include "cache/eviction.h"
 #include "cache/spill_file.h"
 
@@ -26,6 +27,7 @@ struct ResidencyOptions {
   std::filesystem::path spill_folder;  // "": nothing is spilled
   std::uint64_t disk_bytes = ~std::uint64_t{0};
   bool logs_accesses = false;
+  std::function<std::uint64_t()> process_bytes = resident_set_bytes;
   bool tracks_pieces = false;  // without a limit, too: pieces may be missing
 };
 
@@ -89,9 +91,6 @@ class Residency {
   [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
   /// Drops a piece that may be missing, with its copy.
   void forget(PieceKind kind, std::size_t tile);
-  [[nodiscard]] bool is_missing(PieceKind kind, std::size_t tile) const;
-  /// Any piece of the kind?
-  [[nodiscard]] bool any_missing(PieceKind kind) const { return missing_[static_cast<std::size_t>(kind)] > 0; }
 
   /// A new change begins: ages advance, memory outside of pieces is measured, what is over the budget leaves. Throws
   /// ResourceError that names the floor if the budget cannot be kept.
@@ -130,6 +129,8 @@ class Residency {
   }
   void release(PieceKind kind, std::size_t tile);
   void touch(PieceKind kind, std::size_t tile);
+  [[nodiscard]] std::uint64_t known_bytes() const;
+  [[nodiscard]] bool fits(std::uint64_t bytes) const;
   void measure_outside();
   bool make_room_locked(std::uint64_t bytes);
   void list_candidates();
@@ -142,7 +143,6 @@ class Residency {
   ResidencyOptions options_;
   std::unique_ptr<SpillFile> spill_;
   std::array<Kind, kPieceKinds> kinds_;
-  std::array<std::uint64_t, kPieceKinds> missing_{};
   std::function<std::uint64_t()> others_bytes_;
   std::function<void(std::vector<Victim>&)> list_others_;
   mutable std::mutex mutex_;
@@ -150,9 +150,9 @@ class Residency {
   std::uint64_t outside_bytes_ = 0;  // the most that the process has held beside pieces
   double gdsf_inflation_ = 0;
   double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
-  std::vector<Candidate> candidates_;  // the next to leave last; made when needed, for one change
+  std::vector<Candidate> candidates_;  // the next to leave last; made when needed, used up or for one change
   std::vector<Victim> victims_;
-  bool are_candidates_fresh_ = false;
+  std::uint32_t trims_left_ = 0;  // in this change
   PieceCounts counts_;
   std::string log_;
 };

@@ -142,13 +142,6 @@ void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch&
       kept.tiles[tile].is_valid = true;  // none of its samples depends on the parameters
     if (!found.works.empty()) result.counters.by_groups += found.works[tile].by_groups;
   }
-  if (stored_.residency().any_missing(PieceKind::ray_trees)) {
-    std::vector<std::size_t> to_build;
-    for (const std::size_t tile : tiles)
-      if (!kept.tiles[tile].is_valid) to_build.push_back(tile);
-    objects_.prepare(
-        stored_.objects_to_meet(to_build, [&](PathId path) { return found.tasks.of_path[path.index()] != 0; }));
-  }
   watch.lap(result.seconds.test);
 
   std::vector<TileMask> changed(tiles.size());

@@ -16,7 +16,7 @@ namespace relook {
 /// Works on the parts of a replay, which outlive it.
 class Recolorer {
  public:
-  Recolorer(StoredImage& stored, const RayScene& rays, ObjectLevels& objects, ProgramTable& programs,
+  Recolorer(StoredImage& stored, const RayScene& rays, const ObjectLevels& objects, ProgramTable& programs,
             KeptSelection& selection, CompressedEdits& compressed)
       : stored_(stored),
         rays_(rays),
@@ -36,7 +36,7 @@ class Recolorer {
 
   StoredImage& stored_;
   const RayScene& rays_;
-  ObjectLevels& objects_;
+  const ObjectLevels& objects_;
   ProgramTable& programs_;
   KeptSelection& selection_;
   CompressedEdits& compressed_;

@@ -140,7 +140,6 @@ struct Replayer::Impl {
     watch.lap(result.seconds.test);
     Pool<Shader> shaders;
     std::vector<TileUpdate> updates = updates_to_do(works);
-    prepare_objects(updates, tasks, keeps_trees);
     const std::vector<std::size_t> order = by_work(updates, works);
     parallel_for(order.size(), [&](std::size_t i) {
       TileUpdate& update = updates[order[i]];
@@ -153,15 +152,6 @@ struct Replayer::Impl {
     for (const TileWork& work : works) leaves.push_back(work.by_path);
     selection.keep(change, std::move(tasks), std::move(leaves));
     return updates;
-  }
-
-  /// For trees whose hits are not kept: of those that are traced anew, no object is asked for.
-  void prepare_objects(const std::vector<TileUpdate>& updates, const PathTasks& tasks, bool keeps_trees) {
-    if (!residency.any_missing(PieceKind::ray_trees)) return;
-    std::vector<std::size_t> tiles;
-    for (const TileUpdate& update : updates) tiles.push_back(update.tile);
-    objects.prepare(stored.objects_to_meet(
-        tiles, [&](PathId path) { return !keeps_trees || (tasks.of_path[path.index()] & kShade) != 0; }));
   }
 
   /// `works`: by tile.
@@ -203,7 +193,7 @@ struct Replayer::Impl {
     // Tunnels hold for the scene in which the trees were made; they are built when a change first needs them.
     StepChange change = find_change(rays, state.scene(), delta, stored.lights());
     if (change.touches_segments() && !change.rays.lights_changed && !stored.regions().has_tunnels())
-      stored.build_tunnels(grow(nullptr), objects);
+      stored.build_tunnels(grow(nullptr));
     rays.update(state.scene(), delta);
     const std::vector<ObjectId> changed = selection_of(change);
     if (level) level->note_changed(changed);
@@ -226,7 +216,7 @@ struct Replayer::Impl {
 
   void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
     if (!change.touches_rays()) return;
-    stored.keep_paths(updates, grow(nullptr), objects, change.rays.lights_changed);
+    stored.keep_paths(updates, grow(nullptr), change.rays.lights_changed);
     for (const TileUpdate& update : updates)
       if (!update.packed.empty()) compressed.note_trees(update.tile);
   }
@@ -274,7 +264,7 @@ struct Replayer::Impl {
   }
 
   void finish(StepResult& result) {
-    if (has_atoms()) stored.set_atoms(atoms(stored.regions().options().atoms), grow(nullptr), objects);
+    if (has_atoms()) stored.set_atoms(atoms(stored.regions().options().atoms), grow(nullptr));
     Counters& counters = result.counters;
     counters.pixels_changed = result.changed_pixels.size();
     const PieceCounts moves = residency.take_counts();

@@ -131,41 +131,17 @@ void StoredImage::forget_hits(double share) {
   }
 }
 
-std::vector<ObjectId> StoredImage::objects_to_meet(std::span<const std::size_t> tiles,
-                                                   const std::function<bool(PathId)>& matters) const {
-  std::vector<bool> seen(image_.paths.size());
-  std::vector<ObjectId> objects;
-  for (const std::size_t tile : tiles) {
-    if (!residency_.is_missing(PieceKind::ray_trees, tile)) continue;
-    for (const PathId path : image_.trees[tile].paths) {
-      if (seen[path.index()] || !matters(path)) continue;
-      seen[path.index()] = true;
-      for_each_object(image_.paths.words(path), layout(), [&](ObjectId object) { objects.push_back(object); });
-    }
-  }
-  std::ranges::sort(objects);
-  objects.erase(std::ranges::unique(objects).begin(), objects.end());
-  return objects;
-}
-
-void StoredImage::build_tunnels(const GrowScene& scene, ObjectLevels& objects) {
-  std::vector<std::size_t> all(image_.trees.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  objects.prepare(objects_to_meet(all, [](PathId) { return true; }));
-  regions_.build_tunnels(image_, scene, class_of());
-}
-
-void StoredImage::set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene, ObjectLevels& objects) {
+void StoredImage::set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene) {
   if (atoms == atoms_) return;
   atoms_ = std::move(atoms);
-  classify_paths(scene, objects);
+  classify_paths(scene);
 }
 
-void StoredImage::classify_paths(const GrowScene& scene, ObjectLevels& objects) {
+void StoredImage::classify_paths(const GrowScene& scene) {
   classes_.clear();
   index_paths();
   regions_.build_groups(image_, class_of());
-  if (regions_.has_tunnels() && regions_.options().tunnels > 1) build_tunnels(scene, objects);
+  if (regions_.has_tunnels() && regions_.options().tunnels > 1) build_tunnels(scene);
 }
 
 void StoredImage::index_paths() {
@@ -191,8 +167,7 @@ void StoredImage::keep_hits(TileUpdate& update) {
   update.colors = {};
 }
 
-void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, ObjectLevels& objects,
-                             bool lights_changed) {
+void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed) {
   if (lights_changed) {
     image_.paths = PathTable();
     index_.clear();
@@ -213,8 +188,6 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
     for (std::size_t i = 0; i < update.packed.size(); ++i)
       paths[update.packed[i]] = ids[k][update.packed_paths[i].index()];
   }
-  if (regions_.has_tunnels() && residency_.any_missing(PieceKind::ray_trees))
-    objects.prepare(objects_to_meet(changed, [](PathId) { return true; }));
   parallel_for(updates.size(), [&](std::size_t k) {
     const TileUpdate& update = updates[k];
     if (update.packed.empty()) return;
@@ -224,7 +197,7 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
   regions_.update_image(changed);
   segments_ = 0;
   for (std::uint64_t count : tile_segments_) segments_ += count;
-  if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene, objects);
+  if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene);
 }
 
 Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
@@ -235,7 +208,7 @@ Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>
 }
 
 /// Numbers the paths in use afresh, in the order of tiles and samples.
-void StoredImage::drop_unused_paths(const GrowScene& scene, ObjectLevels& objects) {
+void StoredImage::drop_unused_paths(const GrowScene& scene) {
   PathTable used;
   std::vector<PathId> ids(image_.paths.size(), PathId::none());
   for (TileTrees& tile : image_.trees)
@@ -247,7 +220,7 @@ void StoredImage::drop_unused_paths(const GrowScene& scene, ObjectLevels& object
   image_.paths = std::move(used);
   compact_paths_ = image_.paths.size();
   index_.clear();
-  classify_paths(scene, objects);
+  classify_paths(scene);
 }
 
 void StoredImage::keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors) {

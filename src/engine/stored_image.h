@@ -1,7 +1,6 @@
 // What is kept of an image through a series of edits: paths, trees, colours, frame, and what helps to find things in
 // them. Brought up to date with what the passes over its tiles have found.
 #pragma once
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,9 +45,9 @@ class StoredImage {
     atoms_.insert(atoms_.end(), atoms.begin() + std::ssize(atoms_), atoms.end());
   }
   /// After a change, perhaps of the node hierarchy. `scene`: in which the trees hold.
-  void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene, ObjectLevels& objects);
+  void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene);
   /// Requires: the trees hold in `scene`.
-  void build_tunnels(const GrowScene& scene, ObjectLevels& objects);
+  void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
 
   /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees.
   void forget_hits(double share);
@@ -58,11 +57,7 @@ class StoredImage {
   /// Takes over the paths of updates whose hits have been kept, and keeps the regions equal to what would be built from
   /// the trees. `scene`: in which they hold. `lights_changed`: all samples have been packed anew, since the form of
   /// paths follows the light order.
-  void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, ObjectLevels& objects,
-                  bool lights_changed);
-  /// The objects that rays meet in those samples of some tiles whose hits are not kept and whose path `matters`.
-  [[nodiscard]] std::vector<ObjectId> objects_to_meet(std::span<const std::size_t> tiles,
-                                                      const std::function<bool(PathId)>& matters) const;
+  void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
   void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
   /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
@@ -77,9 +72,9 @@ class StoredImage {
   void add_pieces();
   void note_hits(std::size_t tile);
   void index_paths();
-  void classify_paths(const GrowScene& scene, ObjectLevels& objects);
+  void classify_paths(const GrowScene& scene);
   void count_segments(std::size_t tile);
-  void drop_unused_paths(const GrowScene& scene, ObjectLevels& objects);
+  void drop_unused_paths(const GrowScene& scene);
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
 
   Image image_;

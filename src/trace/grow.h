@@ -42,9 +42,8 @@ struct StoredTree {
   const Hit* hits;  // null: not kept
 };
 
-/// Appends the ray tree of one sample from its path and hits. Hits that are not kept are found again among the objects
-/// that the path names (paper 4.1.2): `grow.objects` has been prepared for them. Requires: the scene is the one they
-/// were recorded in.
+/// Appends the ray tree of one sample from its path and hits. Hits that are not kept are found again in `grow.objects`
+/// (paper 4.1.2). Requires: the scene is the one they were recorded in.
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
                           TreeBlock& block, GrowCounters& counters);
 

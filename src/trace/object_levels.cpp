@@ -1,34 +1,40 @@
 #include "trace/object_levels.h"
 
+#include "base/parallel.h"
+
 namespace relook {
 namespace {
 
-/// An object's top level takes some 10 KB: no more of them stay than this, beside those of the pass at hand.
+/// An object's top level takes some 10 KB: not many more of them stay than this.
 constexpr std::size_t kMostKept = 4096;
 
 }  // namespace
 
+ObjectLevels::ObjectLevels(const RayScene& scene) : scene_(scene) { note_changed({}); }
+
 void ObjectLevels::note_changed(std::span<const ObjectId> objects) {
-  for (const ObjectId id : objects) {
-    if (id.index() >= levels_.size() || !levels_[id.index()]) continue;
-    levels_[id.index()].reset();
-    --built_;
+  if (objects_ != scene_.size() || levels_.size() > kMostKept) {
+    levels_.clear();
+    objects_ = scene_.size();
+    by_object_ = std::make_unique<std::atomic<const Tracer::TopLevel*>[]>(objects_);
+    return;
   }
+  for (const ObjectId id : objects)
+    if (const Tracer::TopLevel* old = by_object_[id.index()].exchange(nullptr))
+      std::erase_if(levels_, [&](const auto& level) { return level.get() == old; });
 }
 
-void ObjectLevels::prepare(std::span<const ObjectId> objects) {
-  if (built_ > kMostKept) {
-    levels_.clear();
-    built_ = 0;
-  }
-  levels_.resize(scene_.size());
-  for (const ObjectId id : objects) {
-    std::unique_ptr<Tracer::TopLevel>& level = levels_[id.index()];
-    if (level) continue;
+const Tracer::TopLevel& ObjectLevels::of(ObjectId id) const {
+  std::atomic<const Tracer::TopLevel*>& place = by_object_[id.index()];
+  if (const Tracer::TopLevel* level = place.load(std::memory_order_acquire)) return *level;
+  const std::lock_guard lock(mutex_);
+  if (const Tracer::TopLevel* level = place.load(std::memory_order_relaxed)) return *level;
+  run_isolated([&] {
     const Tracer::Placed placed{id, &scene_.object(id)};
-    level = std::make_unique<Tracer::TopLevel>(tracer_.build(std::span(&placed, 1)));
-    ++built_;
-  }
+    levels_.push_back(std::make_unique<const Tracer::TopLevel>(tracer_.build(std::span(&placed, 1))));
+  });
+  place.store(levels_.back().get(), std::memory_order_release);
+  return *levels_.back();
 }
 
 }  // namespace relook

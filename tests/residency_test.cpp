@@ -1,0 +1,180 @@
+// Residency by itself: what leaves, what comes back, and in which order.
+#include "cache/residency.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace relook {
+namespace {
+
+constexpr std::size_t kTiles = 8;
+constexpr std::uint64_t kPieceBytes = 1000;
+
+/// Pieces of 1000 bytes, each with its own value in them.
+class Residence : public testing::Test {
+ protected:
+  Residency& start(std::uint64_t memory_bytes, bool has_disk, bool may_be_missing = true,
+                   EvictionPolicy policy = EvictionPolicy::weight) {
+    ResidencyOptions options;
+    options.memory_bytes = memory_bytes;
+    options.policy = policy;
+    options.process_bytes = [this] { return outside_bytes_; };
+    if (has_disk) options.spill_folder = testing::TempDir();
+    residency_.emplace(std::move(options));
+    PieceHandler handler;
+    handler.pack = [this](std::size_t tile) { return pieces_[tile]; };
+    handler.unpack = [this](std::size_t tile, BytesView bytes) { pieces_[tile].assign(bytes.begin(), bytes.end()); };
+    handler.drop = [this](std::size_t tile) { pieces_[tile] = {}; };
+    handler.may_be_missing = may_be_missing;
+    residency_->add_kind(PieceKind::ray_trees, kTiles, std::move(handler));
+    return *residency_;
+  }
+  void set(std::size_t tile, double rebuild_seconds = 1, std::uint64_t bytes = kPieceBytes) {
+    pieces_[tile].assign(bytes, static_cast<std::byte>(tile + 1));
+    residency_->set(PieceKind::ray_trees, tile, bytes, rebuild_seconds);
+  }
+  void use(std::size_t tile) { const auto lease = residency_->use(PieceKind::ray_trees, tile); }
+  [[nodiscard]] bool is_resident(std::size_t tile) const { return !pieces_[tile].empty(); }
+  [[nodiscard]] std::vector<std::size_t> residents() const {
+    std::vector<std::size_t> tiles;
+    for (std::size_t tile = 0; tile < kTiles; ++tile)
+      if (is_resident(tile)) tiles.push_back(tile);
+    return tiles;
+  }
+
+  std::uint64_t outside_bytes_ = 0;
+  std::array<Bytes, kTiles> pieces_;
+  std::optional<Residency> residency_;
+};
+
+using Tiles = std::vector<std::size_t>;
+
+TEST_F(Residence, keeps_within_the_limit_and_gives_back_what_was_spilled) {
+  Residency& residency = start(3 * kPieceBytes, true);
+  for (std::size_t tile = 0; tile < kTiles; ++tile) set(tile);
+  EXPECT_EQ(residents().size(), 3U);
+  for (std::size_t tile = 0; tile < kTiles; ++tile) {
+    const auto lease = residency.use(PieceKind::ray_trees, tile);
+    EXPECT_EQ(pieces_[tile], Bytes(kPieceBytes, static_cast<std::byte>(tile + 1)));
+    EXPECT_LE(residents().size(), 3U);
+  }
+  const PieceCounts counts = residency.take_counts();
+  EXPECT_GE(counts.reloaded[0], 5U);
+  EXPECT_GE(counts.evicted[0], 5U);
+  EXPECT_EQ(residency.take_counts().evicted[0], 0U);
+}
+
+TEST_F(Residence, without_a_disk_pieces_go_missing_until_they_are_set_again) {
+  Residency& residency = start(2 * kPieceBytes, false);
+  set(0, 1);
+  set(1, 5);
+  set(2, 3);
+  EXPECT_EQ(residents(), (Tiles{1, 2}));
+  use(0);
+  EXPECT_FALSE(is_resident(0));
+  residency.begin_change();
+  set(0, 9);
+  EXPECT_EQ(residents(), (Tiles{0, 1}));
+}
+
+TEST_F(Residence, what_is_leased_or_cannot_be_missing_stays) {
+  Residency& residency = start(kPieceBytes, false);
+  set(0, 1);
+  const auto lease = residency.use(PieceKind::ray_trees, 0);
+  set(1, 100);
+  EXPECT_TRUE(is_resident(0));
+  start(kPieceBytes, false, false);
+  set(0);
+  set(1);
+  EXPECT_EQ(residents(), (Tiles{0, 1}));
+}
+
+TEST_F(Residence, the_weight_prefers_what_is_dear_small_and_young) {
+  Residency& residency = start(3 * kPieceBytes, false);
+  set(0, 1);
+  set(1, 1);
+  set(2, 1);
+  for (int k = 0; k < 3; ++k) {
+    residency.begin_change();
+    use(0);
+    use(2);
+  }
+  set(3, 10);
+  EXPECT_EQ(residents(), (Tiles{0, 2, 3})) << "the one not used";
+  set(4, 100, 2 * kPieceBytes);
+  EXPECT_EQ(residents(), (Tiles{3, 4})) << "the cheap ones";
+}
+
+TEST_F(Residence, policies_differ) {
+  const auto left = [&](EvictionPolicy policy) {
+    pieces_ = {};
+    Residency& residency = start(4 * kPieceBytes, false, true, policy);
+    set(0, 1, 500);
+    set(1, 9, 2000);
+    set(2, 2, 1500);
+    residency.begin_change();
+    use(1);
+    residency.begin_change();
+    use(0);
+    residency.begin_change();
+    use(2);
+    outside_bytes_ = 4000 + 100;  // as much as the pieces, and a little more
+    (void)residency.make_room(0);
+    outside_bytes_ = 0;
+    return residents();
+  };
+  EXPECT_EQ(left(EvictionPolicy::lru), (Tiles{0, 2}));
+  EXPECT_EQ(left(EvictionPolicy::size), (Tiles{0, 2}));
+  EXPECT_EQ(left(EvictionPolicy::weight), (Tiles{1, 2})) << "0: 1 / (500 * 2), 1: 9 / (2000 * 3), 2: 2 / (1500 * 1)";
+  EXPECT_EQ(left(EvictionPolicy::gdsf), (Tiles{0, 1}));
+}
+
+TEST_F(Residence, a_budget_below_the_floor_is_refused_with_the_floor) {
+  outside_bytes_ = std::uint64_t{300} << 20;
+  Residency& residency = start(std::uint64_t{200} << 20, true);
+  set(0);
+  try {
+    residency.begin_change();
+    FAIL();
+  } catch (const ResourceError& error) {
+    EXPECT_NE(std::string(error.what()).find("300M"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Residence, others_leave_when_they_weigh_least) {
+  Residency& residency = start(3 * kPieceBytes, false);
+  std::uint64_t others = kPieceBytes;
+  residency.set_others([&] { return others; },
+                       [&](std::vector<Victim>& victims) {
+                         if (others > 0)
+                           victims.push_back({1e-9, [&] { return std::exchange(others, 0) > 0 ? 7U : 0U; }});
+                       });
+  set(0);
+  set(1);
+  set(2);
+  EXPECT_EQ(residents(), (Tiles{0, 1, 2}));
+  EXPECT_EQ(residency.take_counts().others_evicted, 7U);
+}
+
+TEST(SpillFile, reuses_extents_and_keeps_within_its_limit) {
+  SpillFile file(testing::TempDir(), 64 << 10);
+  const Bytes piece(20000, std::byte{7});
+  const auto first = file.write(piece), second = file.write(piece);
+  ASSERT_TRUE(first && second);
+  EXPECT_FALSE(file.write(piece)) << "32 KiB each";
+  EXPECT_EQ(file.read(*second), piece);
+  file.free(*first);
+  const auto third = file.write(Bytes(30000, std::byte{9}));
+  ASSERT_TRUE(third);
+  EXPECT_EQ(third->offset, first->offset);
+  EXPECT_EQ(file.read(*second), piece);
+  EXPECT_EQ(file.read(*third), Bytes(30000, std::byte{9}));
+}
+
+TEST(SpillFile, needs_a_folder_that_holds_files) {
+  EXPECT_THROW(SpillFile(std::filesystem::path("/proc/no such folder"), 1 << 20), IoError);
+}
+
+}  // namespace
+}  // namespace relook
