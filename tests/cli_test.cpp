@@ -203,13 +203,13 @@ TEST_F(Cli, structure_options_are_recorded_and_change_no_frame) {
   ASSERT_EQ(preprocess("c").exit_code, 0);
   write_text(at("j.json"), kJournal);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("plain"), "--quiet"}).exit_code, 0);
-  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("tight"), "--quiet", "--memory", "1.5M", "--ray-trees",
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("tight"), "--quiet", "--memory", "1.5G", "--ray-trees",
                     "10%", "--tunnels", "0", "--groups", "0", "--shadow-bits", "0", "--atoms", "1"})
                 .exit_code,
             0);
   const Json plain = read_json(at("plain/report.json")), tight = read_json(at("tight/report.json"));
   EXPECT_EQ(plain["frames"], tight["frames"]);
-  EXPECT_EQ(tight["options"]["memory"], 1572864);
+  EXPECT_EQ(tight["options"]["memory"], 1610612736);
   EXPECT_EQ(tight["options"]["ray_trees"], 10);
   EXPECT_EQ(tight["options"]["groups"], 0);
 }
