@@ -131,10 +131,14 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
 
   CLI::App& check = *app.add_subcommand("check", "Check every byte and invariant of a cache");
   add_inputs(check, arguments, "CACHE", "Cache folder", 1, 1);
+
+  CLI::App& tune = *app.add_subcommand("tune", "Say what each eviction policy and budget would have cost a replay");
+  add_inputs(tune, arguments, "ACCESS_LOG", "What replay --access-log wrote", 1, 1);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 }
 
-constexpr std::array<std::string_view, 6> kVerbs{"render", "preprocess", "replay", "compare", "inspect", "check"};
+constexpr std::array<std::string_view, 7> kVerbs{"render",  "preprocess", "replay", "compare",
+                                                 "inspect", "check",      "tune"};
 constexpr std::array<std::string_view, 4> kProgressStyles{"auto", "plain", "json", "none"};
 
 /// The place of `word` among `choices`. Throws UsageError with the nearest one.

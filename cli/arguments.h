@@ -11,7 +11,7 @@
 
 namespace relook {
 
-enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check };
+enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check, tune };
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, none };
 
 struct ViewArguments {

@@ -25,6 +25,8 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
       return run_inspect(arguments, console);
     case Verb::check:
       return run_check(arguments, console);
+    case Verb::tune:
+      return run_tune(arguments, console);
   }
   return ExitCode::usage;
 }

@@ -12,5 +12,6 @@ namespace relook {
 [[nodiscard]] ExitCode run_compare(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_inspect(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_check(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_tune(const Arguments& arguments, Console& console);
 
 }  // namespace relook

@@ -330,7 +330,7 @@ TEST_F(Cli, budgets_change_no_frame_and_one_below_the_floor_is_refused) {
   };
   ASSERT_EQ(replay("free", {"--access-log", at("log")}).exit_code, 0);
   const Json expected = read_json(folder_ / "free/report.json").at("frames");
-  EXPECT_TRUE(text_of(read_file(folder_ / "log")).starts_with("1 "));
+  EXPECT_TRUE(text_of(read_file(folder_ / "log")).starts_with("relook-access/1\n1 "));
   const std::vector<std::vector<std::string>> budgets{{"--ray-trees", "0"},
                                                       {"--ray-trees", "10", "--color-trees", "1", "--tunnels", "2"},
                                                       {"--memory", "2G", "--policy", "gdsf"},

@@ -108,7 +108,7 @@ void Residency::touch(PieceKind kind, std::size_t tile) {
   char line[160];
   std::snprintf(line, sizeof line, "%llu %s %zu %llu %.6g %.6g\n", static_cast<unsigned long long>(change_),
                 std::string(kind_name(kind)).c_str(), tile, static_cast<unsigned long long>(facts.bytes),
-                piece(kind, tile).rebuild_seconds, facts.surface_area);
+                return_seconds(piece(kind, tile)), facts.surface_area);
   log_ += line;
 }
 
@@ -194,7 +194,7 @@ void Residency::list_candidates() {
     for (std::size_t tile = 0; tile < kinds_[k].pieces.size(); ++tile) {
       Piece& p = kinds_[k].pieces[tile];
       if (p.state != State::resident || p.pins > 0) continue;
-      p.facts.return_seconds = spill_ ? disk_seconds(p.facts.bytes) * (p.copy ? 1 : 2) : p.rebuild_seconds;
+      p.facts.return_seconds = return_seconds(p);
       candidates_.push_back(
           {eviction_weight(options_.policy, p.facts, change_), static_cast<PieceKind>(k), tile, ~std::size_t{0}});
     }
@@ -202,6 +202,12 @@ void Residency::list_candidates() {
   for (std::size_t i = 0; i < victims_.size(); ++i)
     candidates_.push_back({victims_[i].weight, PieceKind::ray_trees, 0, i});
   std::ranges::sort(candidates_, std::greater(), &Candidate::weight);
+}
+
+/// From disk, if it may go there; what has no other way to come back is priced like that, too.
+double Residency::return_seconds(const Piece& p) const {
+  const double by_disk = static_cast<double>(p.facts.bytes) * seconds_per_byte_ * (p.copy ? 1 : 2);
+  return spill_ || p.rebuild_seconds == 0 ? by_disk : p.rebuild_seconds;
 }
 
 bool Residency::evict(PieceKind kind, std::size_t tile) {

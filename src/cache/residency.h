@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/memory.h"
-#include "cache/eviction.h"
+#include "cache/access_log.h"
 #include "cache/spill_file.h"
 
 namespace relook {
@@ -101,8 +101,8 @@ class Residency {
   /// What has happened since the last call.
   [[nodiscard]] PieceCounts take_counts();
   [[nodiscard]] std::uint64_t spilled_bytes() const { return spill_ ? spill_->bytes() : 0; }
-  /// One line an access, for replaying policies: change, kind, tile, bytes, seconds to have it back, surface area.
-  [[nodiscard]] const std::string& access_log() const { return log_; }
+  /// See cache/access_log.h.
+  [[nodiscard]] std::string access_log() const { return std::string(kAccessLogHeader) + log_; }
 
  private:
   enum class State : std::uint8_t { missing, spilled, resident };
@@ -135,9 +135,7 @@ class Residency {
   bool make_room_locked(std::uint64_t bytes);
   void list_candidates();
   bool evict(PieceKind kind, std::size_t tile);
-  [[nodiscard]] double disk_seconds(std::uint64_t bytes) const {
-    return static_cast<double>(bytes) * seconds_per_byte_;
-  }
+  [[nodiscard]] double return_seconds(const Piece& piece) const;
   void free_copy(Piece& piece);
 
   ResidencyOptions options_;
