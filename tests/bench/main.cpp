@@ -1,11 +1,13 @@
 // relook_bench SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]]: the measures of the project on one scene, as ratios within one
 // run, beside the paper's figures (Brière & Poulin 1996, Tables 2 and 3, where a full render takes 640 s).
 // relook_bench growth SCENE JOURNAL: the price of edits at growing numbers of samples.
+// relook_bench budget SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]]: what edits cost when not everything is kept.
 #include <cstdio>
 #include <exception>
 #include <string_view>
 
 #include "base/parallel.h"
+#include "budget.h"
 #include "growth.h"
 #include "render_measures.h"
 #include "table2.h"
@@ -48,6 +50,8 @@ int main(int count, char** arguments) {
   try {
     if (count > 1 && std::string_view(arguments[1]) == "growth")
       relook::print_growth(relook::parse_options(count - 1, arguments + 1));
+    else if (count > 1 && std::string_view(arguments[1]) == "budget")
+      relook::print_budgets(relook::parse_options(count - 1, arguments + 1));
     else
       relook::run(relook::parse_options(count, arguments));
     return 0;

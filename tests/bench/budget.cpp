@@ -1,0 +1,115 @@
+#include "budget.h"
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+
+#include "base/parallel.h"
+#include "cache/access_log.h"
+#include "engine/render.h"
+
+namespace relook {
+namespace {
+
+constexpr std::array<double, 4> kShares{0, 0.01, 0.1, 1};           // of ray trees
+constexpr std::array<double, 5> kBudgets{0.2, 0.4, 0.6, 0.8, 1.0};  // of what the pieces take without a limit
+constexpr int kRounds = 3;                                          // of the journal
+
+/// A replay from the start, edit by edit.
+class Run {
+ public:
+  Run(const BenchOptions& options, const Image& image, const RegionOptions& regions, ResidencyOptions residency)
+      : replayer_(load_scene(options), image, regions, std::move(residency)) {}
+
+  double step(const JournalStep& step, const Journal& journal) {
+    return timed(replayer_, StepKind::step, whole_edit(step), journal).seconds;
+  }
+  /// Rounds of all edits, and then all of them taken back.
+  double all(const Journal& journal) {
+    double seconds = 0;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<Edit> back;
+      for (const JournalStep& one : journal.steps) {
+        back.push_back(inverse_of(whole_edit(one), replayer_.state().document().look));
+        seconds += step(one, journal);
+      }
+      for (; !back.empty(); back.pop_back()) seconds += timed(replayer_, StepKind::step, back.back(), journal).seconds;
+    }
+    return seconds;
+  }
+  [[nodiscard]] const Replayer& replayer() const { return replayer_; }
+
+ private:
+  Replayer replayer_;
+};
+
+void print_shares(const BenchOptions& options, const Image& image, const Journal& journal, double full_seconds) {
+  std::printf("\nfull render / edit, first time, by share of ray trees kept (Table 3's columns)\n");
+  std::printf("  %-34s %10s %10s %10s %10s\n", "edit", "paths only", "1 %", "10 %", "all");
+  std::vector<Run> runs;
+  runs.reserve(kShares.size());
+  for (const double share : kShares) {
+    RegionOptions regions;
+    regions.ray_trees = share;
+    runs.emplace_back(options, image, regions, ResidencyOptions());
+  }
+  for (const JournalStep& step : journal.steps) {
+    std::printf("  %-34s", step.name.c_str());
+    for (Run& run : runs) std::printf(" %10.1f", full_seconds / run.step(step, journal));
+    std::printf("\n");
+  }
+}
+
+/// A limit on pieces alone, so that it means the same in every run.
+ResidencyOptions limited(EvictionPolicy policy, std::uint64_t bytes) {
+  ResidencyOptions residency;
+  residency.process_bytes = [] { return std::uint64_t{0}; };
+  residency.policy = policy;
+  residency.memory_bytes = bytes;
+  residency.spill_folder = std::filesystem::temp_directory_path();
+  return residency;
+}
+
+void print_curve(const BenchOptions& options, const Image& image, const Journal& journal) {
+  ResidencyOptions logging;
+  logging.logs_accesses = true;
+  Run free_run(options, image, {}, logging);
+  const double free_seconds = free_run.all(journal);
+  const Resident resident = free_run.replayer().resident();
+  const std::uint64_t all_bytes = resident.ray_trees + resident.color_trees + resident.tunnels;
+  const AccessLog log = parse_access_log(free_run.replayer().residency().access_log(), "the replay's own log");
+  std::printf("\nthe journal %d times, there and back: %.2f s without a limit, %.0f MB in pieces\n", kRounds,
+              free_seconds, static_cast<double>(all_bytes) * 1e-6);
+  std::printf("  seconds by memory for pieces and by policy (beside it: of this, returns, by the log)\n  %8s",
+              "memory");
+  for (const EvictionPolicy policy : kEvictionPolicies) std::printf(" %18s", std::string(policy_name(policy)).c_str());
+  std::printf(" %12s\n", "clairvoyant");
+  for (const double share : kBudgets) {
+    const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(all_bytes));
+    const auto logged = static_cast<std::uint64_t>(share * static_cast<double>(log.total_bytes()));
+    std::printf("  %6.0f %%", share * 100);
+    for (const EvictionPolicy policy : kEvictionPolicies) {
+      const double seconds = Run(options, image, {}, limited(policy, bytes)).all(journal);
+      std::printf(" %9.2f (%6.3f)", seconds, try_policy(log, policy, logged).seconds);
+    }
+    std::printf("     (%6.3f)\n", try_clairvoyant(log, logged).seconds);
+  }
+}
+
+}  // namespace
+
+void print_budgets(const BenchOptions& options) {
+  SceneState state = load_scene(options);
+  RenderStats stats;
+  const Image image = preprocess(state.scene(), options.view, stats);
+  RenderStats full;
+  static_cast<void>(render(state.scene(), options.view, full));
+  const double full_seconds = full.build_seconds + full.render_seconds;
+  const Journal journal = read_journal(options.journal);
+  std::printf("relook_bench budget: %s at %ux%u, %u sample(s), %zu thread(s); full render %.2f s\n",
+              options.scene.c_str(), options.width, options.height, options.view.samples, thread_count(), full_seconds);
+  print_shares(options, image, journal, full_seconds);
+  print_curve(options, image, journal);
+}
+
+}  // namespace relook

@@ -1,0 +1,10 @@
+// What replays cost when not everything is kept (paper 4; Table 3's columns): shares of ray trees, budgets, policies.
+#pragma once
+#include "setup.h"
+
+namespace relook {
+
+/// `options`: as for the other measures.
+void print_budgets(const BenchOptions& options);
+
+}  // namespace relook
