@@ -30,6 +30,7 @@ RegionOptions region_options(const StructureOptions& structures) {
 ResidencyOptions residency_options(const Arguments& arguments, const std::filesystem::path& folder) {
   ResidencyOptions options;
   options.memory_bytes = arguments.structures.memory_bytes;
+  options.reserve_bytes = options.memory_bytes.value_or(0) / 16;
   for (const EvictionPolicy policy : kEvictionPolicies)
     if (policy_name(policy) == arguments.structures.policy) options.policy = policy;
   options.spill_folder = arguments.spill.empty() ? folder : std::filesystem::path(arguments.spill);

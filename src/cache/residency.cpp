@@ -35,6 +35,7 @@ std::string_view kind_name(PieceKind kind) {
 Residency::Residency(ResidencyOptions options) : options_(std::move(options)) {
   if (is_limited() && !options_.spill_folder.empty() && options_.disk_bytes > 0)
     spill_ = std::make_unique<SpillFile>(options_.spill_folder, options_.disk_bytes);
+  reserve_bytes_ = options_.reserve_bytes;
 }
 
 void Residency::add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler) {
@@ -135,17 +136,18 @@ bool Residency::fits(std::uint64_t bytes) const {
   return outside_bytes_ + known_bytes() + bytes <= *options_.memory_bytes;
 }
 
+std::uint64_t Residency::outside_now() const {
+  const std::uint64_t resident = options_.process_bytes(), known = known_bytes();
+  return resident > known ? resident - known : 0;
+}
+
 void Residency::measure_outside() {
-  const auto measured = [this] {
-    const std::uint64_t resident = options_.process_bytes(), known = known_bytes();
-    return std::max(outside_bytes_, resident > known ? resident - known : 0);
-  };
-  const std::uint64_t before = std::exchange(outside_bytes_, measured());
+  const std::uint64_t before = outside_bytes_;
+  outside_bytes_ = std::max(before, outside_now());
   if (outside_bytes_ == before || fits(0) || trims_left_ == 0) return;
   --trims_left_;
   trim_allocator();
-  outside_bytes_ = before;
-  outside_bytes_ = measured();
+  outside_bytes_ = std::max(before, outside_now());
 }
 
 void Residency::begin_change() {
@@ -155,10 +157,13 @@ void Residency::begin_change() {
   candidates_.clear();
   trims_left_ = kMostTrims;
   if (!is_limited()) return;
-  measure_outside();
-  if (!make_room_locked(0))
-    throw ResourceError("--memory", "this replay needs at least " + megabytes(outside_bytes_ + resident_bytes_ +
-                                                                              (others_bytes_ ? others_bytes_() : 0)));
+  trim_allocator();
+  const std::uint64_t base = outside_now();
+  if (change_ > 1 && outside_bytes_ > base) reserve_bytes_ = std::max(reserve_bytes_, outside_bytes_ - base);
+  outside_bytes_ = base + reserve_bytes_;
+  if (make_room_locked(0)) return;
+  if (const std::uint64_t needed = base + known_bytes(); needed > *options_.memory_bytes)
+    throw ResourceError("--memory", "this replay needs at least " + megabytes(needed));
 }
 
 bool Residency::make_room(std::uint64_t bytes) {

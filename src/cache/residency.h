@@ -23,6 +23,7 @@ inline constexpr std::size_t kPieceKinds = 3;
 
 struct ResidencyOptions {
   std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
+  std::uint64_t reserve_bytes = 0;            // left to a change beside pieces until one has been measured
   EvictionPolicy policy = EvictionPolicy::weight;
   std::filesystem::path spill_folder;  // "": nothing is spilled
   std::uint64_t disk_bytes = ~std::uint64_t{0};
@@ -131,6 +132,7 @@ class Residency {
   void touch(PieceKind kind, std::size_t tile);
   [[nodiscard]] std::uint64_t known_bytes() const;
   [[nodiscard]] bool fits(std::uint64_t bytes) const;
+  [[nodiscard]] std::uint64_t outside_now() const;
   void measure_outside();
   bool make_room_locked(std::uint64_t bytes);
   void list_candidates();
@@ -145,7 +147,8 @@ class Residency {
   std::function<void(std::vector<Victim>&)> list_others_;
   mutable std::mutex mutex_;
   std::uint64_t change_ = 0, resident_bytes_ = 0;
-  std::uint64_t outside_bytes_ = 0;  // the most that the process has held beside pieces
+  std::uint64_t reserve_bytes_ = 0;  // the most that a change has held beside pieces and gave back
+  std::uint64_t outside_bytes_ = 0;  // beside pieces: as this change began with the reserve, or as measured if more
   double gdsf_inflation_ = 0;
   double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
   std::vector<Candidate> candidates_;  // the next to leave last; made when needed, used up or for one change
