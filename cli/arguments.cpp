@@ -3,6 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -13,15 +16,22 @@
 namespace relook {
 namespace {
 
+constexpr int kMostCompared = 26;  // named A to Z
+constexpr double kHundred = 100;
+
 /// Options that need our own syntax, as text until the whole line is read.
 struct RawTexts {
   std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
+  std::string compare_json;  // "-": to stdout
 };
 
 void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--threads", arguments.threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
   verb.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  verb.add_flag("--json", arguments.json, "Print results as one JSON object");
+  if (verb.get_name() == "compare")
+    verb.add_flag("--json{-}", raw.compare_json, "Print results as one JSON object; =FILE writes it there");
+  else
+    verb.add_flag("--json", arguments.json, "Print results as one JSON object");
   verb.add_option("--progress", raw.progress, "auto, plain, json or none");
 }
 
@@ -73,6 +83,23 @@ void add_inputs(CLI::App& verb, Arguments& arguments, const char* name, const ch
   verb.add_option(name, arguments.inputs, help)->required()->expected(least, most);
 }
 
+void add_compare(CLI::App& app, Arguments& arguments) {
+  CLI::App& compare = *app.add_subcommand("compare", "Compare frames, or runs, with the first of them");
+  add_inputs(compare, arguments, "A B", "Frames (.exr), or runs or folders of frames", 2, kMostCompared);
+  add_output(compare, arguments, "Folder for compare.json");
+  compare.add_flag("--exact", arguments.exact_only, "Only what is exact and quick: no PSNR, SSIM and FLIP");
+  Thresholds& limits = arguments.thresholds;
+  const auto add = [&](const char* name, auto& value, const char* help) { compare.add_option(name, value, help); };
+  add("--fail", limits.fail, "A pixel fails when a channel differs by more; without: by a bit");
+  add("--failpercent", limits.fail_percent, "Percentage of the pixels that may fail; 0");
+  add("--hardfail", limits.hard_fail, "No pixel may differ by more");
+  add("--failflip", limits.fail_flip, "Mean FLIP may not be larger");
+  add("--warn", limits.warn, "As --fail, but only said on stderr");
+  add("--warnpercent", limits.warn_percent, "As --failpercent");
+  add("--hardwarn", limits.hard_warn, "As --hardfail");
+  add("--warnflip", limits.warn_flip, "As --failflip");
+}
+
 void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   constexpr int kMostJournals = 10000;
   CLI::App& render = *app.add_subcommand("render", "Render a scene, edited by a journal perhaps");
@@ -116,9 +143,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_option("--disk", raw.disk, "Most disk for what leaves memory, like 20G; 0: it is worked out again");
   replay.add_option("--access-log", arguments.access_log, "File to write: what each step used, for relook tune");
 
-  CLI::App& compare = *app.add_subcommand("compare", "Compare two frames, or two runs of one journal");
-  add_inputs(compare, arguments, "A B", "Frames (.exr) or run folders", 2, 2);
-  add_output(compare, arguments, "Folder for compare.json");
+  add_compare(app, arguments);
 
   CLI::App& inspect = *app.add_subcommand("inspect", "Say what a scene, cache, journal or run contains");
   inspect.add_option("INPUT", arguments.inputs, "Scene, cache, journal or run")->expected(0, 1);
@@ -167,6 +192,41 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
 }
 
+/// "--json FILE.json", too: the word after --json, which is neither a frame nor a folder.
+void take_json_file(const RawTexts& raw, Arguments& arguments) {
+  if (raw.compare_json.empty()) return;
+  arguments.json_file = raw.compare_json == "-" ? "" : raw.compare_json;
+  if (!arguments.json_file.empty()) return;
+  const auto is_json = [](const std::string& input) { return std::filesystem::path(input).extension() == ".json"; };
+  const auto found = std::ranges::find_if(arguments.inputs, is_json);
+  arguments.json = found == arguments.inputs.end();
+  if (arguments.json) return;
+  arguments.json_file = *found;
+  arguments.inputs.erase(found);
+}
+
+void resolve_compare(const RawTexts& raw, Arguments& arguments) {
+  take_json_file(raw, arguments);
+  if (arguments.inputs.size() < 2) throw UsageError("A B: two frames or two folders at least");
+  const Thresholds& limits = arguments.thresholds;
+  const auto require_range = [](const char* option, const std::optional<double>& value, double high) {
+    if (value && !(std::isfinite(*value) && *value >= 0 && *value <= high))
+      throw UsageError(std::string(option) + ": a finite number of at least 0" +
+                       (high == kHundred ? " and at most 100" : ""));
+  };
+  constexpr double kAny = std::numeric_limits<double>::max();
+  require_range("--fail", limits.fail, kAny);
+  require_range("--failpercent", limits.fail_percent, kHundred);
+  require_range("--hardfail", limits.hard_fail, kAny);
+  require_range("--failflip", limits.fail_flip, kAny);
+  require_range("--warn", limits.warn, kAny);
+  require_range("--warnpercent", limits.warn_percent, kHundred);
+  require_range("--hardwarn", limits.hard_warn, kAny);
+  require_range("--warnflip", limits.warn_flip, kAny);
+  if (arguments.exact_only && (limits.fail_flip || limits.warn_flip))
+    throw UsageError("--failflip, --warnflip: not with --exact, which works out no FLIP");
+}
+
 /// `inspect --look SCENE`: the word after --look is the input when there is no other.
 void resolve_inspect(const CLI::App& verb, Arguments& arguments) {
   std::string& patch = arguments.view.look_patch;
@@ -197,6 +257,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
     throw UsageError(error.what());
   }
   resolve(raw, arguments);
+  if (arguments.verb == Verb::compare) resolve_compare(raw, arguments);
   if (arguments.verb == Verb::inspect) resolve_inspect(*app.get_subcommands().front(), arguments);
   return {std::move(arguments), ""};
 }

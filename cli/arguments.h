@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/frame_comparison.h"
 #include "engine/image.h"
 #include "engine/report.h"
 
@@ -45,6 +46,10 @@ struct Arguments {
   std::string access_log;   // replay: file, or ""
   bool print_look = false;  // inspect
   std::string scene;        // inspect, replay, check
+
+  Thresholds thresholds;    // compare
+  bool exact_only = false;  // compare: no PSNR, SSIM, FLIP
+  std::string json_file;    // compare: --json=FILE, or ""
 };
 
 /// The arguments, or what to print instead (--help, --version). Throws UsageError.

@@ -1,57 +1,14 @@
-#include "engine/compare.h"
-
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
-#include <iterator>
-#include <set>
-#include <utility>
 
-#include "engine/frame_file.h"
+#include "compare_inputs.h"
+#include "engine/run_table.h"
 #include "verbs.h"
 
 namespace relook {
 namespace {
-
-struct Comparison {
-  FrameDifference total;
-  std::vector<std::pair<std::string, FrameDifference>> frames;  // by name
-  std::vector<std::string> missing;                             // in one of the two runs only
-};
-
-FrameDifference compare_files(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const Frame first = decode_exr(a), second = decode_exr(b);
-  if (first.width != second.width || first.height != second.height)
-    throw InputError(b.string(), "",
-                     std::to_string(second.width) + "x" + std::to_string(second.height) + " pixels, not the " +
-                         std::to_string(first.width) + "x" + std::to_string(first.height) + " of " + a.string());
-  return compare_frames(first, second);
-}
-
-std::set<std::string> frame_files(const std::filesystem::path& run) {
-  std::set<std::string> names;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(run / "frames", error))
-    if (entry.path().extension() == ".exr") names.insert(entry.path().filename().string());
-  if (error || names.empty()) throw InputError(run.string(), "frames", "no frames: not a run");
-  return names;
-}
-
-Comparison compare_runs(const std::filesystem::path& a, const std::filesystem::path& b, Console& console) {
-  const std::set<std::string> first = frame_files(a), second = frame_files(b);
-  Comparison comparison;
-  std::set_symmetric_difference(first.begin(), first.end(), second.begin(), second.end(),
-                                std::back_inserter(comparison.missing));
-  const Progress progress = console.stage("compare");
-  double done = 0;
-  for (const std::string& name : first) {
-    progress(done++ / static_cast<double>(first.size()));
-    if (!second.contains(name)) continue;
-    comparison.frames.emplace_back(name, compare_files(a / "frames" / name, b / "frames" / name));
-    comparison.total += comparison.frames.back().second;
-  }
-  console.end_stage();
-  return comparison;
-}
 
 std::string short_number(double value) {
   char digits[32];
@@ -65,44 +22,166 @@ std::string text(const std::string& name, const FrameDifference& difference) {
          short_number(difference.max_error) + ", RMS error " + short_number(difference.rms_error);
 }
 
-Json comparison_json(const Arguments& arguments, const Comparison& comparison) {
+std::string text(const Rgba& pixel) {
+  return short_number(double{pixel.r}) + " " + short_number(double{pixel.g}) + " " + short_number(double{pixel.b}) +
+         " " + short_number(double{pixel.a});
+}
+
+std::string text(const std::string& name, const FrameComparison& comparison) {
+  std::string line = text(name, comparison.difference);
+  if (comparison.psnr) line += ", PSNR " + short_number(*comparison.psnr) + " dB";
+  if (comparison.worst && comparison.ssim) line += ", SSIM " + short_number(*comparison.ssim);
+  if (comparison.flip) line += ", FLIP " + short_number(comparison.flip->mean());
+  if (const auto& worst = comparison.worst)
+    line += ", worst at " + std::to_string(worst->x) + "," + std::to_string(worst->y) + ": " + text(worst->a) +
+            " and " + text(worst->b);
+  if (comparison.verdict == Verdict::within) line += "; within the thresholds";
+  return line;
+}
+
+Json pair_json(const std::string& a, const std::string& b, const PairComparison& pair) {
   Json frames = Json::object();
-  for (const auto& [name, difference] : comparison.frames) frames[printable(name)] = difference_json(difference);
+  for (const auto& [name, comparison] : pair.frames) frames[printable(name)] = comparison_json(comparison);
   Json missing = Json::array();
-  for (const std::string& name : comparison.missing) missing.push_back(printable(name));
-  return {{"a", arguments.inputs[0]},
-          {"b", arguments.inputs[1]},
-          {"total", difference_json(comparison.total)},
+  for (const std::string& name : pair.missing) missing.push_back(printable(name));
+  return {{"a", a},
+          {"b", b},
+          {"total", difference_json(pair.total)},
           {"frames", std::move(frames)},
-          {"missing", std::move(missing)}};
+          {"missing", std::move(missing)},
+          {"verdict", verdict_name(pair.verdict)}};
+}
+
+void print_pair(const PairComparison& pair, const std::string& prefix, bool are_folders, Console& console) {
+  for (const std::string& name : pair.missing) console.line(prefix + printable(name) + ": in one run only");
+  for (const auto& [name, comparison] : pair.frames) console.line(text(prefix + printable(name), comparison));
+  if (are_folders) console.line(text(prefix + "total", pair.total));
+}
+
+void warn_of_pair(const PairComparison& pair, const Arguments& arguments, const std::string& b, Console& console) {
+  std::vector<std::string> warnings;
+  for (const auto& [name, comparison] : pair.frames) {
+    const std::array counts{comparison.not_finite_a, comparison.not_finite_b};
+    const std::array inputs{arguments.inputs[0], b};
+    for (std::size_t i = 0; i < counts.size(); ++i)
+      if (counts[i] > 0)
+        warnings.push_back(inputs[i] + ": " + name + ": " + std::to_string(counts[i]) + " pixels are not finite");
+    if (comparison.verdict == Verdict::warning) warnings.push_back(b + ": " + name + ": above a threshold of --warn");
+  }
+  console.warn(warnings);
+}
+
+std::string column_name(std::size_t column) { return std::string(1, static_cast<char>('A' + column)); }
+
+std::string padded(const std::string& text, std::size_t width) {
+  return std::string(width - std::min(width, text.size()), ' ') + text;
+}
+
+constexpr std::size_t kCellWidth = 12;
+
+void print_measure(const RunTable& table, std::size_t measure, Console& console) {
+  std::string head = padded(std::string(kMeasures[measure].name), kCellWidth * 2);
+  for (std::size_t column = 0; column < table.columns.size(); ++column) head += padded(column_name(column), kCellWidth);
+  console.line(head);
+  std::vector<double> sums(table.columns.size());
+  const auto print_row = [&](const std::string& label, const auto& cell, const std::string& note) {
+    std::string line = padded(label, kCellWidth * 2);
+    for (std::size_t column = 0; column < table.columns.size(); ++column) line += padded(cell(column), kCellWidth);
+    console.line(line + note);
+  };
+  const bool is_time = kMeasures[measure].is_time;
+  const auto number = [&](double value) {
+    return is_time ? short_number(value) : std::to_string(static_cast<std::uint64_t>(value));
+  };
+  for (const RunTable::Row& row : table.rows) {
+    const auto cell = [&](std::size_t column) {
+      if (column >= row.values.size() || !row.values[column]) return std::string("-");
+      sums[column] += (*row.values[column])[measure];
+      return number((*row.values[column])[measure]);
+    };
+    print_row(row.label + " " + row.change_class, cell, "  " + printable(row.name));
+  }
+  if (kMeasures[measure].name != "resident_bytes")
+    print_row(
+        "all", [&](std::size_t column) { return number(sums[column]); }, "");
+}
+
+/// Seconds, and those counters that are not the same in all runs.
+void print_table(const RunTable& table, Console& console) {
+  for (std::size_t column = 0; column < table.columns.size(); ++column) {
+    std::string line = column_name(column) + ": " + printable(table.columns[column].run);
+    for (const auto& [name, value] : table.columns[column].settings) line += ", " + name + " " + printable(value);
+    if (const auto& seconds = table.columns[column].full_render_seconds)
+      line += ", full render " + short_number(*seconds) + " s";
+    console.line(line);
+  }
+  std::string same;
+  for (std::size_t measure = 0; measure < kMeasures.size(); ++measure) {
+    if (measure == 0 || (!kMeasures[measure].is_time && !table.is_same(measure)))
+      print_measure(table, measure, console);
+    else if (!kMeasures[measure].is_time)
+      same += (same.empty() ? "" : ", ") + std::string(kMeasures[measure].name);
+  }
+  if (!same.empty()) console.line("the same in all: " + same);
+}
+
+/// Requires the same kind of all inputs. Whether they are folders.
+bool check_kinds(const std::vector<std::string>& inputs) {
+  std::error_code error;
+  const bool are_folders = std::filesystem::is_directory(inputs[0], error);
+  for (const std::string& input : inputs) {
+    if (std::filesystem::is_directory(input, error) == are_folders) continue;
+    throw InputError(are_folders ? input : inputs[0], "", "not a run folder: two frames or two runs are compared");
+  }
+  return are_folders;
+}
+
+std::optional<RunTable> read_table(const std::vector<std::string>& inputs, Console& console) {
+  std::vector<RunSteps> runs;
+  for (const std::string& input : inputs) {
+    std::optional<RunSteps> run = read_run_steps(input);
+    if (run) runs.push_back(std::move(*run));
+  }
+  if (runs.size() < 2) return std::nullopt;
+  RunTable table = run_table(runs);
+  if (!table.has_one_scene) console.warn({"these are runs of different scenes"});
+  if (!table.has_one_journal) console.warn({"these are runs of different journals"});
+  return table;
+}
+
+void write_json(const Arguments& arguments, const Json& result, Console& console) {
+  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  console.json(result);
+  if (!arguments.json_file.empty()) write_file(arguments.json_file, text);
+  if (arguments.output.empty()) return;
+  make_folders(arguments.output);
+  write_file(std::filesystem::path(arguments.output) / "compare.json", text);
 }
 
 }  // namespace
 
 ExitCode run_compare(const Arguments& arguments, Console& console) {
-  const std::filesystem::path a = arguments.inputs[0], b = arguments.inputs[1];
-  std::error_code error;
-  const bool are_runs = std::filesystem::is_directory(a, error);
-  if (are_runs != std::filesystem::is_directory(b, error))
-    throw InputError((are_runs ? b : a).string(), "", "not a run folder: two frames or two runs are compared");
-  Comparison comparison;
-  if (are_runs) {
-    comparison = compare_runs(a, b, console);
-  } else {
-    comparison.total = compare_files(a, b);
-    comparison.frames.emplace_back(b.filename().string(), comparison.total);
+  const std::vector<std::string>& inputs = arguments.inputs;
+  const bool are_folders = check_kinds(inputs);
+  Json pairs = Json::array();
+  Verdict verdict = Verdict::equal;
+  for (std::size_t i = 1; i < inputs.size(); ++i) {
+    const PairComparison pair = are_folders ? compare_folders(inputs[0], inputs[i], arguments, console)
+                                            : compare_files(inputs[0], inputs[i], arguments);
+    print_pair(pair, inputs.size() > 2 ? printable(inputs[i]) + ": " : "", are_folders, console);
+    warn_of_pair(pair, arguments, inputs[i], console);
+    pairs.push_back(pair_json(printable(inputs[0]), printable(inputs[i]), pair));
+    verdict = std::max(verdict, pair.verdict);
   }
-  for (const std::string& name : comparison.missing) console.line(printable(name) + ": in one run only");
-  for (const auto& [name, difference] : comparison.frames) console.line(text(printable(name), difference));
-  if (are_runs) console.line(text("total", comparison.total));
-  const Json result = comparison_json(arguments, comparison);
-  console.json(result);
-  if (!arguments.output.empty()) {
-    make_folders(arguments.output);
-    write_file(std::filesystem::path(arguments.output) / "compare.json", result.dump(2) + "\n");
+  Json result = pairs.size() == 1 ? pairs[0] : Json{{"pairs", pairs}, {"verdict", verdict_name(verdict)}};
+  if (are_folders) {
+    if (const std::optional<RunTable> table = read_table(inputs, console)) {
+      print_table(*table, console);
+      result["runs"] = run_table_json(*table);
+    }
   }
-  const bool is_equal = comparison.total.pixels_different == 0 && comparison.missing.empty();
-  return is_equal ? ExitCode::ok : ExitCode::difference;
+  write_json(arguments, result, console);
+  return verdict == Verdict::failure ? ExitCode::difference : ExitCode::ok;
 }
 
 }  // namespace relook

@@ -1,0 +1,35 @@
+// What `relook compare` is given: single frames, or folders of frames, each compared with the first.
+#pragma once
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "console.h"
+#include "engine/frame_comparison.h"
+
+namespace relook {
+
+/// Frames by name in one folder: that of a run, or any folder with .exr files.
+struct FrameFolder {
+  std::filesystem::path folder;
+  std::set<std::string> names;
+};
+/// Throws InputError when there is no frame.
+[[nodiscard]] FrameFolder frame_folder(const std::filesystem::path& path);
+
+struct PairComparison {
+  std::vector<std::pair<std::string, FrameComparison>> frames;  // by name
+  std::vector<std::string> missing;                             // in one of the two folders only
+  FrameDifference total;
+  Verdict verdict = Verdict::equal;  // the worst of all frames; failure when one is missing
+};
+
+/// Throws InputError for files that are no frames, or frames of two sizes.
+[[nodiscard]] PairComparison compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                                           const Arguments& arguments);
+[[nodiscard]] PairComparison compare_folders(const std::filesystem::path& a, const std::filesystem::path& b,
+                                             const Arguments& arguments, Console& console);
+
+}  // namespace relook
