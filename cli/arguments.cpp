@@ -71,8 +71,9 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::Range(0, 4));
 }
 
-void add_float(CLI::App& verb, Arguments& arguments) {
+void add_frame_options(CLI::App& verb, Arguments& arguments) {
   verb.add_flag("--float", arguments.float_frames, "Write 32-bit float frames instead of half");
+  verb.add_flag("--aovs", arguments.layers, "Write layers for compositing into the frames, too");
 }
 
 CLI::Option* add_output(CLI::App& verb, Arguments& arguments, const char* help) {
@@ -111,7 +112,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->needs("--journal");
   add_view(render, arguments, raw);
   add_look_patch(render, arguments);
-  add_float(render, arguments);
+  add_frame_options(render, arguments);
 
   CLI::App& preprocess = *app.add_subcommand("preprocess", "Write the cache of a scene and a camera");
   add_inputs(preprocess, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
@@ -132,7 +133,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
   add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
   add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");
-  add_float(replay, arguments);
+  add_frame_options(replay, arguments);
   add_structures(replay, arguments, raw);
   replay
       .add_option("--policy", arguments.structures.policy,

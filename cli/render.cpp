@@ -1,8 +1,11 @@
 #include "engine/render.h"
 
+#include <functional>
+#include <optional>
+
 #include "base/hash.h"
 #include "edit/apply.h"
-#include "engine/frame_file.h"
+#include "engine/layered_frame.h"
 #include "engine/report.h"
 #include "load_scene.h"
 #include "verbs.h"
@@ -21,19 +24,36 @@ ChangeClass apply_step(SceneState& state, const Journal& journal, const JournalS
   return change;
 }
 
-/// The scene as edited by steps 1..last, and where the frame's header says it comes from.
-void apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last,
-                   FrameMeta& meta) {
+/// The scene as edited by steps 1..last, and where the frame's header says it comes from. `before_last` is called when
+/// the last step is about to change the frame.
+void apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last, FrameMeta& meta,
+                   const std::function<void()>& before_last) {
   if (last && *last > journal.steps.size())
     throw UsageError("--step: " + std::to_string(*last) + " is beyond the " + std::to_string(journal.steps.size()) +
                      " steps of " + journal.file);
   const std::size_t count = last ? *last : journal.steps.size();
   check_journal(state, journal);
   ChangeClass change = ChangeClass::base;
-  for (std::size_t i = 0; i < count; ++i) change = apply_step(state, journal, journal.steps[i]);
+  for (std::size_t i = 0; i < count; ++i) {
+    const JournalStep& step = journal.steps[i];
+    const bool is_frame_of_last_value = !step.drag.empty() || !step.wedge.empty();
+    if (i + 1 == count && !is_frame_of_last_value) before_last();
+    change = apply_step(state, journal, step);
+  }
   meta.journal_hash = journal.hash;
   meta.step = std::to_string(count);
   meta.change_class = change_class_name(change);
+}
+
+Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& frame,
+              const std::optional<Frame>& before, const FrameMeta& meta, Console& console) {
+  const PixelFormat format = arguments.float_frames ? PixelFormat::float32 : PixelFormat::half;
+  if (!arguments.layers) return encode_exr(frame, meta, format);
+  const ChangedPixels changed = before ? pixels_between(*before, frame) : ChangedPixels();
+  Bytes bytes = encode_layered_exr({state.scene(), arguments.view.sampling, frame, changed, format}, meta,
+                                   console.stage("layers"));
+  console.end_stage();
+  return bytes;
 }
 
 }  // namespace
@@ -44,12 +64,17 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
   FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
-  if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta);
+  std::optional<Frame> before;  // the frame that the last step changed
+  const auto render_before = [&] {
+    RenderStats ignored;
+    if (arguments.layers) before = render(loaded.state->scene(), arguments.view.sampling, ignored);
+  };
+  if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before);
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   RenderStats stats;
   const Frame frame = render(loaded.state->scene(), arguments.view.sampling, stats, console.stage("render"));
   console.end_stage();
-  const Bytes bytes = encode_exr(frame, meta, arguments.float_frames ? PixelFormat::float32 : PixelFormat::half);
+  const Bytes bytes = encoded(arguments, *loaded.state, frame, before, meta, console);
   console.check_interrupt();
   write_file(arguments.output, bytes);
 

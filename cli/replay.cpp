@@ -203,7 +203,8 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   FrameMeta meta;
   meta.scene_hash = report_.scene_hash;
   meta.journal_hash = report_.journal_hash;
-  folder_.write_step(entry, replayer_.image().frame, result.changed_pixels, std::move(meta));
+  folder_.write_step(entry, replayer_.image(), result.changed_pixels, std::move(meta),
+                     arguments_.layers ? &replayer_.state().scene() : nullptr);
   if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
   entry.seconds.total = seconds_since(start);
   entry.resident = replayer_.resident();

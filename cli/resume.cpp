@@ -68,9 +68,9 @@ std::optional<std::string> run_hash(const Arguments& arguments, const Journal& j
   options.structures = arguments.structures;
   options.float_frames = arguments.float_frames;
   options.verify_percent = arguments.verify_percent;
-  const Json run{{"program", program_version()},   {"cache", manifest["hash"]},
-                 {"journal", journal.hash},        {"options", options_json(options)},
-                 {"overlays", arguments.overlays}, {"baseline", arguments.baseline}};
+  const Json run{{"program", program_version()},     {"cache", manifest["hash"]},      {"journal", journal.hash},
+                 {"options", options_json(options)}, {"overlays", arguments.overlays}, {"baseline", arguments.baseline},
+                 {"layers", arguments.layers}};
   return hash128(bytes_of(run.dump()));
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "engine/layered_frame.h"
 #include "engine/overlay.h"
 
 namespace relook {
@@ -57,6 +58,7 @@ RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint3
     : path_(made(std::move(path))),
       progress_(path_),
       notes_steps_(run.has_value()),
+      format_(format),
       encoder_(width, height, format),
       preview_encoder_(width, height) {
   if (run && !is_fresh) keep_finished_steps(*run);
@@ -115,10 +117,12 @@ void RunFolder::remove_all_but_kept() {
   }
 }
 
-void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels, FrameMeta meta) {
+void RunFolder::write_step(StepReport& step, const Image& image, const ChangedPixels& changed_pixels, FrameMeta meta,
+                           const Scene* layers) {
   const auto start = std::chrono::steady_clock::now();
   finish_writing();
   std::optional<Json> last = std::exchange(finished_, std::nullopt);
+  const Frame& frame = image.frame;
   if (frame_hashes_.empty()) {
     encoder_.update(frame);
     preview_encoder_.update(frame);
@@ -131,17 +135,20 @@ void RunFolder::write_step(StepReport& step, const Frame& frame, const ChangedPi
   meta.change_class = change_class_name(step.change);
   step.frame = frame_name(step.step, step.frame_in_step());
   step.preview = preview_name(step.step, step.frame_in_step());
-  writing_ = std::async(std::launch::async, [this, frame_path = path_ / step.frame, preview_path = path_ / step.preview,
-                                             meta = std::move(meta), last = std::move(last)] {
-    append_note(last);
-    write_frame(frame_path, preview_path, meta);
-  });
+  std::optional<Bytes> layered;
+  if (layers != nullptr) layered = encode_layered_exr({*layers, image.view, frame, changed_pixels, format_}, meta);
+  writing_ =
+      std::async(std::launch::async, [this, frame_path = path_ / step.frame, preview_path = path_ / step.preview,
+                                      meta = std::move(meta), last = std::move(last), layered = std::move(layered)] {
+        append_note(last);
+        write_frame(frame_path, preview_path, meta, layered);
+      });
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void RunFolder::write_frame(const std::filesystem::path& frame, const std::filesystem::path& preview,
-                            const FrameMeta& meta) {
-  const Bytes bytes = encoder_.exr(meta);
+                            const FrameMeta& meta, const std::optional<Bytes>& layered) {
+  const Bytes bytes = layered ? *layered : encoder_.exr(meta);
   write_file(frame, bytes);
   frame_hashes_.push_back(hash128(bytes));
   if (std::exchange(preview_is_stale_, false)) preview_ = preview_encoder_.png();

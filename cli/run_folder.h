@@ -34,8 +34,10 @@ class RunFolder {
   /// Writes the frame and preview of a step and sets step.frame, preview and seconds.write. Only tiles of changed
   /// pixels are compressed again, and all of that happens while the next step runs: seconds.write is what this step
   /// waits for, the hash of the frame is known to write_report(), and what goes wrong is thrown by the next call.
-  /// `meta.step` and `meta.change_class` are taken from `step`.
-  void write_step(StepReport& step, const Frame& frame, const ChangedPixels& changed_pixels, FrameMeta meta);
+  /// `meta.step` and `meta.change_class` are taken from `step`. `layers`: the frame's scene, if it is to have layers;
+  /// they are made here, which is part of seconds.write.
+  void write_step(StepReport& step, const Image& image, const ChangedPixels& changed_pixels, FrameMeta meta,
+                  const Scene* layers);
   /// Writes overlays/<step>_<kind>.png: leaves that depend on the selection, leaves whose tunnels it may touch, groups.
   void write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result);
   /// After write_step() and write_overlays(), with all that is known of the step: a later run may take it over.
@@ -49,7 +51,8 @@ class RunFolder {
   void remove_all_but_kept();
   void finish_writing();
   void append_note(const std::optional<Json>& note);
-  void write_frame(const std::filesystem::path& frame, const std::filesystem::path& preview, const FrameMeta& meta);
+  void write_frame(const std::filesystem::path& frame, const std::filesystem::path& preview, const FrameMeta& meta,
+                   const std::optional<Bytes>& layered);
 
   std::filesystem::path path_;
   ProgressFile progress_;
@@ -58,6 +61,7 @@ class RunFolder {
   std::map<std::string, std::string> overlay_hashes_;  // by file, of those written since the last note
   std::string preview_hash_;                           // of the last frame
   std::optional<Json> finished_;                       // note of the last step, not yet in the progress file
+  PixelFormat format_;
   FrameEncoder encoder_;
   PreviewEncoder preview_encoder_;
   bool preview_is_stale_ = true;

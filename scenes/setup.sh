@@ -1,7 +1,7 @@
 # Sourced by demo.sh and ../tests/run.sh from the project's root: installs what is missing (Debian 12), configures, builds.
 
 # openimageio-tools: OpenImageIO's CMake files refuse to load without its programs.
-packages="g++ cmake make pkg-config python3 libembree-dev libopenimageio-dev openimageio-tools libopenexr-dev \
+packages="g++ cmake make pkg-config python3 libembree-dev libopenimageio-dev openimageio-tools openexr libopenexr-dev \
 libimath-dev libtinygltf-dev nlohmann-json3-dev libcli11-dev libgtest-dev libtbb-dev libzstd-dev \
 libxxhash-dev zlib1g-dev libdeflate-dev libisal-dev"
 

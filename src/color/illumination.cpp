@@ -13,7 +13,9 @@ Triple blinn_phong_color(SurfaceTerms& terms) {
   const Triple diffuse = base * terms.field3(Field::phong_diffuse) * terms.number(kInversePi);
   const Scalar shininess = terms.field(Field::shininess);
   const Triple specular = terms.field3(Field::phong_specular) * ((shininess + 8.0F) * (0.125F * kInversePi));
-  Triple sum = terms.ambient() * terms.field3(Field::phong_ambient) * base * terms.occlusion();
+  Triple sum = terms.counts(kAmbientSource)
+                   ? terms.ambient() * terms.field3(Field::phong_ambient) * base * terms.occlusion()
+                   : terms.grey(0);
   for (const VisibleLight& light : terms.key().lights) {
     const Incidence lamp = terms.incidence(light);
     const Scalar nl = max(dot(normal, lamp.direction), 0.0F);
@@ -21,7 +23,7 @@ Triple blinn_phong_color(SurfaceTerms& terms) {
     const Scalar lobe = exp2(log2(min(nh, 1.0F)) * shininess);
     sum = sum + (diffuse + specular * lobe) * nl * lamp.irradiance;
   }
-  sum = sum + terms.emission();
+  if (terms.counts(kEmissionSource)) sum = sum + terms.emission();
   if (terms.has_child(Branch::reflection)) sum = sum + terms.child(Branch::reflection) * terms.field(Field::reflection);
   if (terms.has_child(Branch::refraction)) sum = sum + terms.child(Branch::refraction) * terms.field(Field::refraction);
   if (terms.has_child(Branch::transparency))
@@ -39,7 +41,8 @@ std::array<Value, 4> surface_expression(SurfaceTerms& terms) {
   const IlluminationModel model = terms.builder().shape(Field::model).model;
   Triple color = model == IlluminationModel::metallic_roughness ? metallic_roughness_color(terms)
                  : model == IlluminationModel::blinn_phong      ? blinn_phong_color(terms)
-                                                                : terms.base_color();
+                 : terms.counts(kEmissionSource)                ? terms.base_color()
+                                                                : terms.grey(0);
   if (terms.builder().shape(Field::alpha_mode).alpha_mode != AlphaMode::blend) return values(color, terms.number(1));
   const Scalar coverage = terms.coverage();
   color = color * coverage;
@@ -47,6 +50,12 @@ std::array<Value, 4> surface_expression(SurfaceTerms& terms) {
   const Scalar rest = 1.0F - coverage;
   return values(color + terms.child(Branch::transparency) * rest,
                 coverage + rest * terms.child_alpha(Branch::transparency));
+}
+
+std::array<Value, 4> aspect_expression(SurfaceTerms& terms) {
+  if (terms.key().aspect == Aspect::normal)
+    return values(terms.normal(Slot::normal, Field::normal_scale), terms.number(1));
+  return values(terms.base_color(), terms.coverage());
 }
 
 /// The share of light that passes a transparent surface on its way to a node.
@@ -69,6 +78,8 @@ std::array<Value, 4> filter_expression(SurfaceTerms& terms) {
 }
 
 std::array<Value, 4> environment_expression(SurfaceTerms& terms) {
+  if (terms.key().aspect != Aspect::color || !terms.counts(kEnvironmentSource))
+    return values(terms.grey(0), terms.number(0));
   ExpressionBuilder& b = terms.builder();
   Triple color{{&b, b.environment(0)}, {&b, b.environment(1)}, {&b, b.environment(2)}};
   if (b.scene().environment.image) {
@@ -81,13 +92,21 @@ std::array<Value, 4> environment_expression(SurfaceTerms& terms) {
 
 }  // namespace
 
+NodeKey restricted(NodeKey key, const ColorPart& part) {
+  key.aspect = part.aspect;
+  key.sources &= part.sources;
+  key.children &= part.branches;
+  if (!part.all_lamps) std::erase_if(key.lights, [&](const VisibleLight& light) { return light.light != part.lamp; });
+  return key;
+}
+
 ColorProgram build_program(const Scene& scene, const MaterialStructure& structure, const NodeKey& key) {
   ExpressionBuilder builder(scene, structure);
   SurfaceTerms terms(builder, key);
   std::array<Value, 4> result{};
   switch (key.kind) {
     case NodeKind::surface:
-      result = surface_expression(terms);
+      result = key.aspect == Aspect::color ? surface_expression(terms) : aspect_expression(terms);
       break;
     case NodeKind::filter:
       result = filter_expression(terms);

@@ -12,6 +12,13 @@ namespace relook {
 
 enum class NodeKind : std::uint8_t { surface, filter, environment };
 
+/// What a program yields: the colour, or what a layer of a frame shows of a surface (zero for the environment): its
+/// base colour and coverage, or its normal-mapped normal, in the world and on the ray's side.
+enum class Aspect : std::uint8_t { color, albedo, normal };
+
+/// Where light comes from, beside lamps: a bit each. The colour of an unlit surface is emission.
+enum Source : std::uint8_t { kAmbientSource = 1, kEnvironmentSource = 2, kEmissionSource = 4, kAllSources = 7 };
+
 /// A light that reaches a node: its place in the light order, and whether transparent surfaces stand in between.
 struct VisibleLight {
   LightId light;
@@ -28,9 +35,21 @@ struct NodeKey {
   bool vertex_colors = false;
   bool interface_only = false;  // the inner side of a volume
   std::uint8_t children = 0;    // bit per Branch
+  Aspect aspect = Aspect::color;
+  std::uint8_t sources = kAllSources;  // that count
   std::vector<VisibleLight> lights;
   auto operator<=>(const NodeKey&) const = default;
 };
+
+/// A part of the colours of nodes: that of some sources and lamps, through some branches.
+struct ColorPart {
+  Aspect aspect = Aspect::color;
+  std::uint8_t sources = kAllSources;
+  std::uint8_t branches = 0xF;  // bit per Branch
+  bool all_lamps = true;
+  LightId lamp{};  // unless all: the only one, or none
+};
+[[nodiscard]] NodeKey restricted(NodeKey key, const ColorPart& part);
 
 /// The program of nodes whose keys differ in the material alone, if these materials have this structure.
 [[nodiscard]] ColorProgram build_program(const Scene& scene, const MaterialStructure& structure, const NodeKey& key);

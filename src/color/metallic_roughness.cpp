@@ -79,7 +79,7 @@ class BaseLayer {
     const Triple mirror = fresnel(dielectric, weight);
     const Scalar fade = mirror_fade(roughness_);
     Triple sum = t_.grey(0);
-    if (!t_.key().interface_only)
+    if (!t_.key().interface_only && t_.counts(kAmbientSource))
       sum = t_.ambient() * t_.occlusion() * (base_ * diffuse_share(dielectric) + mirror * (1.0F - fade));
     if (t_.has_child(Branch::reflection)) {
       Triple seen = t_.child(Branch::reflection) * mirror * fade;
@@ -211,7 +211,7 @@ Triple metallic_roughness_color(SurfaceTerms& terms) {
     sum = sum * sheen.passed();
     for (const Incidence& lamp : lamps) sum = sum + sheen.reflected(lamp.direction) * lamp.irradiance;
   }
-  sum = sum + terms.emission();
+  if (terms.counts(kEmissionSource)) sum = sum + terms.emission();
   if (terms.builder().shape(Field::clearcoat).clearcoat) {
     CoatLayer coat(terms);
     sum = sum * coat.passed();

@@ -27,15 +27,16 @@ struct SignatureHash {
   }
 };
 
-/// Gives nodes dense program numbers within one block.
+/// Gives nodes dense program numbers within one block. Nodes, not filters, are restricted to a part of their colours.
 class NodePrograms {
  public:
-  NodePrograms(const RayScene& scene, ProgramTable& table) : scene_(scene), table_(table) {}
+  NodePrograms(const RayScene& scene, ProgramTable& table, const ColorPart& part = {})
+      : scene_(scene), table_(table), part_(part) {}
 
   std::uint32_t number(const TreeBlock& block, const RayNode& node) {
-    if (scene_.scene().light_order.size() > kMostSignatureLights) return number_of(key_of(scene_, block, node));
-    const Signature signature = signature_of(block, node);
-    return number(signature, [&] { return key_of(scene_, block, node); });
+    const auto key = [&] { return restricted(key_of(scene_, block, node), part_); };
+    if (scene_.scene().light_order.size() > kMostSignatureLights) return number_of(key());
+    return number(signature_of(block, node), key);
   }
   std::uint32_t number(const TreeBlock&, const FilterNode& filter) {
     Signature signature{surface_bits(filter.object, filter.point.inside, 0) | kFilterBit, 0};
@@ -90,6 +91,7 @@ class NodePrograms {
 
   const RayScene& scene_;
   ProgramTable& table_;
+  ColorPart part_;
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
   std::map<NodeKey, std::uint32_t> key_numbers_;
   std::vector<BoundProgram> programs_;

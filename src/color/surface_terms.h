@@ -38,6 +38,7 @@ class SurfaceTerms {
   [[nodiscard]] Triple view() { return input3(Input::view); }
   [[nodiscard]] Triple ambient() { return {{&b_, b_.ambient(0)}, {&b_, b_.ambient(1)}, {&b_, b_.ambient(2)}}; }
 
+  [[nodiscard]] bool counts(Source source) const { return (key_.sources & source) != 0; }
   [[nodiscard]] Incidence incidence(const VisibleLight& light);
   [[nodiscard]] bool has_child(Branch branch) const {
     return (key_.children >> static_cast<unsigned>(branch) & 1U) != 0;

@@ -1,7 +1,10 @@
 #include "engine/changed_pixels.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
+
+#include "base/error.h"
 
 namespace relook {
 
@@ -37,6 +40,15 @@ std::vector<std::uint32_t> ChangedPixels::indices(std::uint32_t width) const {
   }
   std::ranges::sort(pixels);
   return pixels;
+}
+
+ChangedPixels pixels_between(const Frame& before, const Frame& after) {
+  require(before.pixels.size() == after.pixels.size() && before.width == after.width, "frames of one size");
+  std::vector<std::uint32_t> pixels;
+  for (std::size_t i = 0; i < after.pixels.size(); ++i)
+    if (std::memcmp(&before.pixels[i], &after.pixels[i], sizeof(Rgba)) != 0)
+      pixels.push_back(static_cast<std::uint32_t>(i));
+  return ChangedPixels(pixels, after.width);
 }
 
 }  // namespace relook

@@ -37,6 +37,9 @@ class ChangedPixels {
   std::vector<Tile> tiles_;  // none is empty; in no order
 };
 
+/// The pixels whose bits differ. Requires: frames of one size.
+[[nodiscard]] ChangedPixels pixels_between(const Frame& before, const Frame& after);
+
 [[nodiscard]] inline bool is_empty(const TileMask& mask) {
   std::uint64_t any = 0;
   for (const std::uint64_t row : mask) any |= row;

@@ -1,6 +1,5 @@
-// Frames as OpenEXR files: tiled 64x64, ZIP, R,G,B,A, scene-linear Rec.709. Encoded to memory, because OpenEXR's own
-// writer loses the last write error; the bytes are the same in every run: no dates, no names of hosts. Compressed tiles
-// are kept from step to step, so that a step pays for the tiles that it changed.
+// Frames as OpenEXR files (engine/exr_tiles.h): R,G,B,A. The bytes are the same in every run: no dates, no names of
+// hosts. Compressed tiles are kept from step to step, so that a step pays for the tiles that it changed.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -11,11 +10,10 @@
 
 #include "base/files.h"
 #include "engine/changed_pixels.h"
+#include "engine/exr_tiles.h"
 #include "engine/image.h"
 
 namespace relook {
-
-enum class PixelFormat : std::uint8_t { half, float32 };
 
 /// What a frame's header says of its origin: the string attributes relook:scene, relook:journal, relook:step and
 /// relook:class. Empty ones are left out.
@@ -24,9 +22,10 @@ struct FrameMeta {
   std::string step;          // "3", "3_01"
   std::string change_class;  // change_class_name()
 };
+[[nodiscard]] ExrAttributes frame_attributes(const FrameMeta& meta);
 
-/// The compressed tiles of one frame. Finite values beyond the range of half become its largest ones. Taking pixels is
-/// quick, and exr() needs no frame: it may run on another thread while the next frame is computed.
+/// The compressed tiles of one frame. Taking pixels is quick, and exr() needs no frame: it may run on another thread
+/// while the next frame is computed.
 class FrameEncoder {
  public:
   FrameEncoder(std::uint32_t width, std::uint32_t height, PixelFormat format);

@@ -1,0 +1,104 @@
+#include "engine/frame_layers.h"
+
+#include <set>
+
+namespace relook {
+namespace {
+
+using NamedParts = std::vector<std::pair<std::string, LayerPart>>;
+
+constexpr std::size_t kLongestName = 100;  // bytes; OpenEXR takes 255 for a channel
+
+/// A name as part of a channel's: letters, digits, "_" and "-" stay.
+std::string channel_name(std::string_view name) {
+  std::string result(name.substr(0, kLongestName));
+  for (char& c : result) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (!is_plain) c = '_';
+  }
+  return result;
+}
+
+std::string distinct(const std::string& name, std::set<std::string>& taken) {
+  std::string result = name;
+  for (int i = 2; !taken.insert(result).second; ++i) result = name + "_" + std::to_string(i);
+  return result;
+}
+
+ColorPart of_sources(std::uint8_t sources) { return {.sources = sources, .all_lamps = false}; }
+LayerPart of_aspect(Aspect aspect) {
+  return {{.aspect = aspect, .sources = 0, .branches = 0, .all_lamps = false}, true};
+}
+ColorPart through(std::initializer_list<Branch> branches) {
+  ColorPart part{.sources = 0, .branches = 0, .all_lamps = false};
+  for (const Branch branch : branches)
+    part.branches = static_cast<std::uint8_t>(part.branches | 1U << static_cast<unsigned>(branch));
+  return part;
+}
+
+/// What lit the pixel, on whatever way.
+NamedParts parts_by_light(const Scene& scene) {
+  NamedParts parts;
+  std::set<std::string> taken;
+  for (const LightId light : scene.light_order) {
+    const std::string name = distinct("light_" + channel_name(scene.light(light).node), taken);
+    parts.push_back({name, {{.sources = 0, .all_lamps = false, .lamp = light}, false}});
+  }
+  parts.push_back({"ambient", {of_sources(kAmbientSource), false}});
+  parts.push_back({"environment", {of_sources(kEnvironmentSource), false}});
+  parts.push_back({"emission", {of_sources(kEmissionSource), false}});
+  return parts;
+}
+
+/// What the first hit does with the light.
+NamedParts parts_by_path() {
+  return {{"direct", {{.sources = kAmbientSource, .branches = 0}, true}},
+          {"reflected", {through({Branch::reflection, Branch::coat}), true}},
+          {"refracted", {through({Branch::refraction}), true}},
+          {"transparent", {through({Branch::transparency}), true}},
+          {"emitted", {{.sources = kEmissionSource, .branches = 0, .all_lamps = false}, true}},
+          {"background", {{.sources = kEnvironmentSource, .branches = 0, .all_lamps = false}, true}}};
+}
+
+}  // namespace
+
+std::string matte_name(const Material& material) { return material.name.empty() ? "default" : material.name; }
+
+FrameLayers::FrameLayers(const Scene& scene, std::uint32_t samples, PixelFormat format)
+    : objects("CryptoObject", samples), materials("CryptoMaterial", samples) {
+  for (const char* name : {"R", "G", "B", "A"}) channels.push_back({name, format});
+  for (const char* name : {"albedo.R", "albedo.G", "albedo.B", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "depth.Z",
+                           "uv.U", "uv.V", "changed.A"})
+    channels.push_back({name, PixelFormat::float32});
+  for (const Object& object : scene.objects) {
+    if (!object.alive) continue;
+    objects.add_name(object.node);
+    materials.add_name(matte_name(scene.material(object.material)));
+  }
+  for (const auto& [matte, column] : {std::pair{&objects, &object_column}, std::pair{&materials, &material_column}}) {
+    *column = channels.size();
+    for (ExrChannel& channel : matte->channels()) channels.push_back(std::move(channel));
+    for (auto& attribute : matte->attributes()) attributes.push_back(std::move(attribute));
+  }
+  parts = {of_aspect(Aspect::albedo), of_aspect(Aspect::normal)};
+  add_sum("relook:lights", parts_by_light(scene), "lights_rest");
+  add_sum("relook:paths", parts_by_path(), "paths_rest");
+}
+
+void FrameLayers::add_color(const std::string& layer) {
+  for (const char* name : {".R", ".G", ".B"}) channels.push_back({layer + name, PixelFormat::float32});
+}
+
+void FrameLayers::add_sum(const char* attribute, const NamedParts& layers, const std::string& rest) {
+  sums.push_back({parts.size(), layers.size(), channels.size()});
+  std::string names;
+  for (const auto& [name, part] : layers) {
+    parts.push_back(part);
+    add_color(name);
+    names += name + " ";
+  }
+  add_color(rest);
+  attributes.emplace_back(attribute, names + rest);
+}
+
+}  // namespace relook
