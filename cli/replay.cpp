@@ -51,7 +51,8 @@ struct CacheFacts {
 class JournalRun {
  public:
   JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
-             const CacheFacts& cache, const std::filesystem::path& folder);
+             const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
+             const std::filesystem::path& folder);
 
   /// Writes the report at the end of the run, or when a signal ends it; an error leaves none. Returns the number of
   /// pixels that --verify found different.
@@ -81,13 +82,14 @@ class JournalRun {
 };
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
-                       const CacheFacts& cache, const std::filesystem::path& folder)
+                       const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
+                       const std::filesystem::path& folder)
     : arguments_(arguments),
       console_(console),
       journal_(journal),
       folder_(folder, restored.image.frame.width, restored.image.frame.height,
-              arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, run_hash(arguments, journal),
-              arguments.fresh),
+              arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view,
+              run_hash(arguments, journal, view.get()), arguments.fresh),
       replayer_(std::move(*restored.state), std::move(restored.image), region_options(arguments.structures),
                 residency_options(arguments, folder)) {
   report_.scene = replayer_.state().document().file;
@@ -268,6 +270,7 @@ RestoredImage restore(CacheContent content, const std::string& cache) {
 ExitCode run_replay(const Arguments& arguments, Console& console) {
   const std::string& cache = arguments.inputs[0];
   const std::vector<Journal> journals = read_journals(arguments);
+  const std::shared_ptr<const DisplayView> view = display_view_of_environment();
   const bool has_several = journals.size() > 1;
   std::vector<std::filesystem::path> folders;
   for (const Journal& journal : journals) {
@@ -295,7 +298,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
     if (i > 0) restored = restore(i + 1 < journals.size() ? content : std::move(content), cache);
-    JournalRun run(arguments, console, journals[i], std::move(restored), facts, folders[i]);
+    JournalRun run(arguments, console, journals[i], std::move(restored), facts, view, folders[i]);
     pixels_different += run.run();
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
   }

@@ -59,7 +59,7 @@ bool only_replaces_values(const Edit& edit) {
 
 }  // namespace
 
-std::optional<std::string> run_hash(const Arguments& arguments, const Journal& journal) {
+std::optional<std::string> run_hash(const Arguments& arguments, const Journal& journal, const DisplayView* view) {
   const std::optional<Json> files = hashes_of_files(journal);
   if (!files) return std::nullopt;
   Json manifest;
@@ -68,9 +68,10 @@ std::optional<std::string> run_hash(const Arguments& arguments, const Journal& j
   options.structures = arguments.structures;
   options.float_frames = arguments.float_frames;
   options.verify_percent = arguments.verify_percent;
-  const Json run{{"program", program_version()},     {"cache", manifest["hash"]},      {"journal", journal.hash},
-                 {"options", options_json(options)}, {"overlays", arguments.overlays}, {"baseline", arguments.baseline},
-                 {"layers", arguments.layers}};
+  const Json run{{"program", program_version()},   {"cache", manifest["hash"]},
+                 {"journal", journal.hash},        {"options", options_json(options)},
+                 {"overlays", arguments.overlays}, {"baseline", arguments.baseline},
+                 {"layers", arguments.layers},     {"view", view != nullptr ? view->id() : ""}};
   return hash128(bytes_of(run.dump()));
 }
 

@@ -54,13 +54,14 @@ void RunFolder::refuse_foreign(const std::filesystem::path& path) {
 }
 
 RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format,
-                     const std::optional<std::string>& run, bool is_fresh)
+                     std::shared_ptr<const DisplayView> view, const std::optional<std::string>& run, bool is_fresh)
     : path_(made(std::move(path))),
       progress_(path_),
       notes_steps_(run.has_value()),
       format_(format),
       encoder_(width, height, format),
-      preview_encoder_(width, height) {
+      view_(std::move(view)),
+      preview_encoder_(width, height, view_) {
   if (run && !is_fresh) keep_finished_steps(*run);
   remove_all_but_kept();
   progress_.restart(run.value_or(""), kept_notes_);
@@ -162,7 +163,7 @@ void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer,
     Frame frame = replayer.image().frame;
     for (std::size_t tile = 0; tile < tile_count(frame.width, frame.height); ++tile) draw(frame, tile);
     const std::string name = "overlays/" + std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png";
-    const Bytes bytes = encode_png(frame);
+    const Bytes bytes = encode_png(frame, view_);
     write_file(path_ / name, bytes);
     overlay_hashes_[name] = hash128(bytes);
   };

@@ -24,9 +24,9 @@ class RunFolder {
 
   /// Creates the folder, or empties that of an earlier run. `run`: hash of the inputs, see run_hash(); none: nothing is
   /// noted for a later run. `is_fresh`: nothing of an earlier run is kept. Throws IoError when another run is writing
-  /// here.
+  /// here. `view`: of previews and overlays; null: sRGB.
   RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format,
-            const std::optional<std::string>& run, bool is_fresh);
+            std::shared_ptr<const DisplayView> view, const std::optional<std::string>& run, bool is_fresh);
 
   /// Entries of the frames that were kept, whole steps from the first on, each file with the hash that was noted.
   [[nodiscard]] const std::vector<Json>& kept() const { return kept_; }
@@ -63,6 +63,7 @@ class RunFolder {
   std::optional<Json> finished_;                       // note of the last step, not yet in the progress file
   PixelFormat format_;
   FrameEncoder encoder_;
+  std::shared_ptr<const DisplayView> view_;
   PreviewEncoder preview_encoder_;
   bool preview_is_stale_ = true;
   Bytes preview_;                          // of the last frame

@@ -69,6 +69,11 @@ void append_chunk(Bytes& out, std::string_view type, BytesView data) {
   append_number(out, static_cast<std::uint32_t>(sum));
 }
 
+/// The nearest code of a display value.
+unsigned char display_code(float value) {
+  return value > 0 ? static_cast<unsigned char>(std::min(value, 1.0F) * 255.0F + 0.5F) : std::uint8_t{0};  // NaN: 0
+}
+
 constexpr std::uint32_t kBandRows = 16;
 
 /// Deflate blocks that end on a byte and are not the last of their stream.
@@ -95,9 +100,10 @@ Bytes deflate_blocks(std::vector<unsigned char>& rows) {
 
 }  // namespace
 
-PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height)
+PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height, std::shared_ptr<const DisplayView> view)
     : width_(width),
       height_(height),
+      view_(std::move(view)),
       codes_(std::size_t{width} * height * 3),
       bands_((height + kBandRows - 1) / kBandRows) {}
 
@@ -110,6 +116,11 @@ void PreviewEncoder::take(const Frame& frame, std::uint32_t x, std::uint32_t y) 
   const std::size_t index = std::size_t{y} * width_ + x;
   const Rgba& pixel = frame.pixels[index];
   unsigned char* codes = &codes_[index * 3];
+  if (view_) {
+    const Rgba shown = view_->apply(pixel);
+    for (int channel = 0; channel < 3; ++channel) codes[channel] = display_code(shown[channel]);
+    return;
+  }
   codes[0] = codes_of.of(pixel.r);
   codes[1] = codes_of.of(pixel.g);
   codes[2] = codes_of.of(pixel.b);
@@ -179,14 +190,14 @@ Bytes PreviewEncoder::png() {
   for (const int value : {8, 2, 0, 0, 0}) header.push_back(static_cast<std::byte>(value));  // 8 bits, RGB
   append_chunk(png, "IHDR", header);
   constexpr std::byte kPerceptual{0};
-  append_chunk(png, "sRGB", BytesView(&kPerceptual, 1));
+  if (!view_) append_chunk(png, "sRGB", BytesView(&kPerceptual, 1));
   append_chunk(png, "IDAT", stream);
   append_chunk(png, "IEND", {});
   return png;
 }
 
-Bytes encode_png(const Frame& frame) {
-  PreviewEncoder encoder(frame.width, frame.height);
+Bytes encode_png(const Frame& frame, std::shared_ptr<const DisplayView> view) {
+  PreviewEncoder encoder(frame.width, frame.height, std::move(view));
   encoder.update(frame);
   return encoder.png();
 }

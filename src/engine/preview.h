@@ -1,21 +1,25 @@
-// Previews: 8-bit sRGB PNG files of a frame over black, for looking at, never for comparing. Deflated in bands of rows
+// Previews: 8-bit PNG files of a frame over black, sRGB or as a display view says, for looking at, never for comparing.
+// Deflated in bands of rows
 // that are kept from step to step, so that a step pays for the bands that it changed; by ISA-L, four times as fast as
 // zlib, since this is most of what a small edit's files cost.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/files.h"
 #include "engine/changed_pixels.h"
+#include "engine/display_view.h"
 #include "engine/image.h"
 
 namespace relook {
 
-/// NaN becomes black. The bytes depend on the frame alone. Taking pixels is quick, and png() needs no frame: it may run
-/// on another thread while the next frame is computed.
+/// NaN becomes black. The bytes depend on the frame and the view alone. Taking pixels is quick, and png() needs no
+/// frame: it may run on another thread while the next frame is computed.
 class PreviewEncoder {
  public:
-  PreviewEncoder(std::uint32_t width, std::uint32_t height);
+  /// `view`: what makes display values; null: sRGB.
+  PreviewEncoder(std::uint32_t width, std::uint32_t height, std::shared_ptr<const DisplayView> view = nullptr);
 
   /// Takes all pixels.
   void update(const Frame& frame);
@@ -35,10 +39,11 @@ class PreviewEncoder {
   [[nodiscard]] std::vector<unsigned char> filtered_rows(std::size_t band) const;
 
   std::uint32_t width_, height_;
-  std::vector<unsigned char> codes_;  // [height * width * 3], sRGB, row 0 on top
+  std::shared_ptr<const DisplayView> view_;
+  std::vector<unsigned char> codes_;  // [height * width * 3], row 0 on top
   std::vector<Band> bands_;
 };
 
-[[nodiscard]] Bytes encode_png(const Frame& frame);
+[[nodiscard]] Bytes encode_png(const Frame& frame, std::shared_ptr<const DisplayView> view = nullptr);
 
 }  // namespace relook
