@@ -100,6 +100,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.view = replayer_.image().view;
   report_.structures = arguments.structures;
   report_.float_frames = arguments.float_frames;
+  report_.layers = arguments.layers;
   report_.verify_percent = arguments.verify_percent;
   report_.threads = thread_count();
   report_.cache = cache.sizes;

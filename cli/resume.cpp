@@ -67,11 +67,15 @@ std::optional<std::string> run_hash(const Arguments& arguments, const Journal& j
   RunReport options;
   options.structures = arguments.structures;
   options.float_frames = arguments.float_frames;
+  options.layers = arguments.layers;
   options.verify_percent = arguments.verify_percent;
-  const Json run{{"program", program_version()},   {"cache", manifest["hash"]},
-                 {"journal", journal.hash},        {"options", options_json(options)},
-                 {"overlays", arguments.overlays}, {"baseline", arguments.baseline},
-                 {"layers", arguments.layers},     {"view", view != nullptr ? view->id() : ""}};
+  const Json run{{"program", program_version()},
+                 {"cache", manifest["hash"]},
+                 {"journal", journal.hash},
+                 {"options", options_json(options)},
+                 {"overlays", arguments.overlays},
+                 {"baseline", arguments.baseline},
+                 {"view", view != nullptr ? view->id() : ""}};
   return hash128(bytes_of(run.dump()));
 }
 

@@ -124,14 +124,15 @@ void RunFolder::write_step(StepReport& step, const Image& image, const ChangedPi
   finish_writing();
   std::optional<Json> last = std::exchange(finished_, std::nullopt);
   const Frame& frame = image.frame;
-  if (frame_hashes_.empty()) {
-    encoder_.update(frame);
-    preview_encoder_.update(frame);
-  } else if (!changed_pixels.empty()) {
-    encoder_.update(frame, changed_pixels);
-    preview_encoder_.update(frame, changed_pixels);
-    preview_is_stale_ = true;
-  }
+  const auto take = [&](auto& encoder) {
+    if (frame_hashes_.empty())
+      encoder.update(frame);
+    else
+      encoder.update(frame, changed_pixels);
+  };
+  if (layers == nullptr) take(encoder_);
+  take(preview_encoder_);
+  preview_is_stale_ = preview_is_stale_ || !changed_pixels.empty();
   meta.step = step_label(step.step, step.frame_in_step());
   meta.change_class = change_class_name(step.change);
   step.frame = frame_name(step.step, step.frame_in_step());

@@ -226,6 +226,16 @@ TEST(Cryptomatte, hashes_as_murmur3) {
   EXPECT_EQ(murmur3("The quick brown fox jumps over the lazy dog"), 0x2E4FF723U);
 }
 
+// The values that the specification's authors test their own plug-ins with.
+TEST(Cryptomatte, ids_are_those_of_other_programs) {
+  const std::pair<const char*, float> ids[]{
+      {"hello", 6.0705627102400005616e-17F},    {"cube", -4.08461912519e+15F},
+      {"sphere", 2.79018604383e+15F},           {"plane", 3.66557617593e-11F},
+      {"равнина", -1.3192631212399999468e-25F}, {"mädchen", 6.2361298211599995797e+25F}};
+  for (const auto& [name, id] : ids)
+    EXPECT_FLOAT_EQ(std::bit_cast<float>(cryptomatte_id(name)), id) << name;  // quoted to 12 digits
+}
+
 TEST(Cryptomatte, ids_are_normal_numbers) {
   EXPECT_EQ(cryptomatte_id(""), 1U << 23);
   for (int i = 0; i < 20'000; ++i) {

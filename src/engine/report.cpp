@@ -113,6 +113,7 @@ Json options_json(const RunReport& report) {
           {"atoms", structures.atoms},
           {"shadow_bits", report.view.shadow_bits},
           {"float", report.float_frames},
+          {"aovs", report.layers},
           {"verify", or_null(report.verify_percent)}};
 }
 

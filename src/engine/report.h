@@ -66,6 +66,7 @@ struct RunReport {
   ViewOptions view;
   StructureOptions structures;
   bool float_frames = false;
+  bool layers = false;  // --aovs
   std::optional<double> verify_percent;
   std::size_t threads = 0;
   std::optional<double> full_render_seconds;
