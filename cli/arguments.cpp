@@ -19,10 +19,25 @@ namespace {
 constexpr int kMostCompared = 26;  // named A to Z
 constexpr double kHundred = 100;
 
+constexpr std::string_view kExamples =
+    "Examples:\n"
+    "  relook inspect shot.glb --look                      what can be edited, by name\n"
+    "  relook preprocess shot.glb -o shot.cache --camera Main --resolution 1920x1080\n"
+    "  relook inspect night.json --scene shot.cache        the class of each step; renders nothing\n"
+    "  relook replay shot.cache night.json -o runs/night --verify\n"
+    "  relook replay shot.cache night.json -o runs/part2 --steps 51-100 --progress openjd\n"
+    "  relook compare runs/night runs/night2 --failpercent 0.1 --fail 0.001\n"
+    "  relook compare reference.exr frame.exr --json=difference.json\n"
+    "  relook completions bash > /etc/bash_completion.d/relook\n"
+    "Exit codes: 0 ok, 1 usage, 2 bad input, 3 the cache does not fit, 4 out of memory or disk, 5 damaged cache,\n"
+    "6 I/O error, 10 a comparison or --verify found a difference, 128 + N ended by signal N.\n"
+    "relook VERB --help has all options of a verb.";
+
 /// Options that need our own syntax, as text until the whole line is read.
 struct RawTexts {
   std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
   std::string compare_json;  // "-": to stdout
+  std::optional<std::string> steps;
 };
 
 void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
@@ -32,7 +47,10 @@ void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
     verb.add_flag("--json{-}", raw.compare_json, "Print results as one JSON object; =FILE writes it there");
   else
     verb.add_flag("--json", arguments.json, "Print results as one JSON object");
-  verb.add_option("--progress", raw.progress, "auto, plain, json or none");
+  verb.add_option("--progress", raw.progress, "auto, plain, json, openjd or none")
+      ->type_name("{auto,plain,json,openjd,none}");
+  verb.add_flag("--log-json", arguments.log_json, "Warnings, errors and progress on stderr as one JSON object a line");
+  verb.add_option("--trace", arguments.trace, "File to write: what took how long, for Perfetto (Chrome trace events)");
 }
 
 CLI::Option* add_look_patch(CLI::App& verb, Arguments& arguments,
@@ -129,6 +147,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_flag("--overlays", arguments.overlays, "Write images of the regions that each step found, on its frame");
   replay.add_flag("--strict", arguments.strict,
                   "Refuse a cache with any damage, instead of tracing again what is damaged or missing");
+  replay.add_option("--steps", raw.steps, "Frames of these steps only, like 3, 2-5 or 4-, after the edits before them");
   replay.add_flag("--fresh", arguments.fresh, "Do every step, instead of resuming a run that ended early");
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
   add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
@@ -161,11 +180,17 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   CLI::App& tune = *app.add_subcommand("tune", "Say what each eviction policy and budget would have cost a replay");
   add_inputs(tune, arguments, "ACCESS_LOG", "What replay --access-log wrote", 1, 1);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
+
+  CLI::App& completions = *app.add_subcommand("completions", "Print completions for a shell");
+  completions.add_option("SHELL", arguments.inputs, "bash, zsh or fish")
+      ->required()
+      ->expected(1)
+      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
 }
 
-constexpr std::array<std::string_view, 7> kVerbs{"render",  "preprocess", "replay", "compare",
-                                                 "inspect", "check",      "tune"};
-constexpr std::array<std::string_view, 4> kProgressStyles{"auto", "plain", "json", "none"};
+constexpr std::array<std::string_view, 8> kVerbs{"render",  "preprocess", "replay", "compare",
+                                                 "inspect", "check",      "tune",   "completions"};
+constexpr std::array<std::string_view, 5> kProgressStyles{"auto", "plain", "json", "openjd", "none"};
 
 /// The place of `word` among `choices`. Throws UsageError with the nearest one.
 template <class Choices>
@@ -187,10 +212,21 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
     arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);
   if (!raw.color_trees.empty())
     arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
+  if (raw.steps) arguments.steps = parse_steps("--steps", *raw.steps);
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
   arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
+}
+
+/// What CLI11 shows of a value's type: "TEXT:{weight,lru}" has the choices "weight" and "lru".
+std::vector<std::string> choices_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t begin = type.find('{'), end = type.find('}');
+  std::vector<std::string> choices;
+  if (begin != std::string::npos && end != std::string::npos)
+    choices = CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
+  return choices;
 }
 
 /// "--json FILE.json", too: the word after --json, which is neither a frame nor a folder.
@@ -238,8 +274,28 @@ void resolve_inspect(const CLI::App& verb, Arguments& arguments) {
 
 }  // namespace
 
+std::vector<VerbHelp> command_line_help() {
+  CLI::App app;
+  Arguments arguments;
+  RawTexts raw;
+  add_verbs(app, arguments, raw);
+  std::vector<VerbHelp> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {
+    VerbHelp help{verb->get_name(), verb->get_description(), {}};
+    for (const CLI::Option* option : verb->get_options()) {
+      OptionHelp entry{{}, option->get_description(), option->get_expected_min() > 0, choices_of(*option)};
+      for (const std::string& name : option->get_snames()) entry.names.push_back("-" + name);
+      for (const std::string& name : option->get_lnames()) entry.names.push_back("--" + name);
+      if (!entry.names.empty()) help.options.push_back(std::move(entry));
+    }
+    verbs.push_back(std::move(help));
+  }
+  return verbs;
+}
+
 ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   CLI::App app("relook: replays edits of a scene and recomputes exactly the part of the image that changed", "relook");
+  app.footer(std::string(kExamples));
   app.set_version_flag("--version", std::string("relook ") + std::string(program_version()));
   app.require_subcommand(1);
   Arguments arguments;

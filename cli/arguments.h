@@ -12,8 +12,8 @@
 
 namespace relook {
 
-enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check, tune };
-enum class ProgressStyle : std::uint8_t { automatic, plain, json, none };
+enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check, tune, completions };
+enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };
 
 struct ViewArguments {
   std::string camera;  // NAME | auto | EYE:TARGET:FOV; "": the scene's own
@@ -34,19 +34,22 @@ struct Arguments {
   bool quiet = false, json = false;
   bool overlays = false;  // images of the regions found
   ProgressStyle progress = ProgressStyle::automatic;
+  bool log_json = false;
+  std::string trace;  // file, or ""
 
   std::string journal;                // render
   std::optional<std::uint32_t> step;  // render
   bool float_frames = false;          // render, replay
   bool layers = false;                // render, replay: --aovs
   std::optional<double> verify_percent;
-  bool baseline = false;    // replay
-  bool strict = false;      // replay: no cache with damage, even such as can be made good
-  bool fresh = false;       // replay: no frame of an earlier run is kept
-  std::string spill;        // replay: folder of the spill file; "": the run's
-  std::string access_log;   // replay: file, or ""
-  bool print_look = false;  // inspect
-  std::string scene;        // inspect, replay, check
+  bool baseline = false;           // replay
+  bool strict = false;             // replay: no cache with damage, even such as can be made good
+  std::optional<StepRange> steps;  // replay
+  bool fresh = false;              // replay: no frame of an earlier run is kept
+  std::string spill;               // replay: folder of the spill file; "": the run's
+  std::string access_log;          // replay: file, or ""
+  bool print_look = false;         // inspect
+  std::string scene;               // inspect, replay, check
 
   Thresholds thresholds;    // compare
   bool exact_only = false;  // compare: no PSNR, SSIM, FLIP
@@ -59,5 +62,18 @@ struct ParsedCommandLine {
   std::string text;
 };
 [[nodiscard]] ParsedCommandLine parse_command_line(int argc, const char* const* argv);
+
+/// The command line as completions need it.
+struct OptionHelp {
+  std::vector<std::string> names;  // "-o", "--output"
+  std::string help;                // one sentence
+  bool takes_value = false;
+  std::vector<std::string> choices;  // of the value, if there are few
+};
+struct VerbHelp {
+  std::string name, help;
+  std::vector<OptionHelp> options;
+};
+[[nodiscard]] std::vector<VerbHelp> command_line_help();
 
 }  // namespace relook

@@ -166,6 +166,10 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   Json pairs = Json::array();
   Verdict verdict = Verdict::equal;
   for (std::size_t i = 1; i < inputs.size(); ++i) {
+    const auto share = [&](std::size_t done) {
+      return static_cast<double>(done) / static_cast<double>(inputs.size() - 1);
+    };
+    console.part(share(i - 1), share(i), "compare " + inputs[i]);
     const PairComparison pair = are_folders ? compare_folders(inputs[0], inputs[i], arguments, console)
                                             : compare_files(inputs[0], inputs[i], arguments);
     print_pair(pair, inputs.size() > 2 ? printable(inputs[i]) + ": " : "", are_folders, console);
@@ -173,6 +177,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
     pairs.push_back(pair_json(printable(inputs[0]), printable(inputs[i]), pair));
     verdict = std::max(verdict, pair.verdict);
   }
+  console.part_done();
   Json result = pairs.size() == 1 ? pairs[0] : Json{{"pairs", pairs}, {"verdict", verdict_name(verdict)}};
   if (are_folders) {
     if (const std::optional<RunTable> table = read_table(inputs, console)) {

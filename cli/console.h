@@ -1,4 +1,6 @@
-// What the user sees: results on stdout, progress and warnings on stderr.
+// What the user sees: results on stdout, progress and warnings on stderr; with --log-json all on stderr is one JSON
+// object a line. --progress openjd prints what Open Job Description's specification ("How Jobs Are Run", Stdout/Stderr
+// Messages) asks for, on stdout, or on stderr when stdout is for --json.
 #pragma once
 #include <mutex>
 #include <string>
@@ -6,9 +8,11 @@
 #include <vector>
 
 #include "arguments.h"
+#include "base/error.h"
 #include "base/json.h"
 #include "engine/render.h"
 #include "interrupt.h"
+#include "trace_file.h"
 
 namespace relook {
 
@@ -32,14 +36,31 @@ class Console {
   /// The result as JSON; nothing without --json.
   void json(const Json& result) const;
   void warn(const std::vector<std::string>& warnings);
+  /// The line on stderr for what ended the program; with --progress openjd also said to the render manager.
+  void error(ExitCode code, std::string_view what);
+
+  /// The part of the whole work that stages and part_done() are shares of from here on, 0..1, and what it is: for
+  /// --progress openjd, which shows one percentage for the whole.
+  void part(double begin, double end, std::string_view what);
+  void part_done();
+
+  /// A span of --trace from here to the end of the scope.
+  [[nodiscard]] TraceScope span(std::string name) { return {trace_, std::move(name)}; }
+  [[nodiscard]] TraceFile& trace() { return trace_; }
 
  private:
   void show(const std::string& stage, double done);
+  void show_whole(double done);
+  void say(std::string_view key, std::string_view value);
+  void log(std::string_view level, Json members) const;
 
   const Interrupt& interrupt_;
   ProgressStyle style_;
   bool is_bar_ = false;  // automatic style on a terminal
-  bool quiet_, json_;
+  bool quiet_, json_, logs_json_;
+  double part_begin_ = 0, part_end_ = 1, shown_whole_ = -1;
+  std::string shown_stage_;
+  TraceFile trace_;
   std::mutex mutex_;
   int shown_percent_ = -1;
   bool bar_is_open_ = false;

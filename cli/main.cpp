@@ -27,6 +27,8 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
       return run_check(arguments, console);
     case Verb::tune:
       return run_tune(arguments, console);
+    case Verb::completions:
+      return run_completions(arguments, console);
   }
   return ExitCode::usage;
 }
@@ -36,43 +38,63 @@ void require_printed() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("standard output", "cannot be written");
 }
 
-ExitCode run(int argc, const char* const* argv) {
-  const ParsedCommandLine parsed = parse_command_line(argc, argv);
-  if (!parsed.arguments) {
-    std::fputs(parsed.text.c_str(), stdout);
-    require_printed();
-    return ExitCode::ok;
+/// The exit code of `work`, or of what it threw, after report(code, sentence).
+template <class Work, class Report>
+int guarded(const Work& work, const Report& report) {
+  try {
+    return static_cast<int>(work());
+  } catch (const Interrupted& interrupted) {
+    report(static_cast<ExitCode>(kSignalExitBase + interrupted.signal), "interrupted");
+    return kSignalExitBase + interrupted.signal;
+  } catch (const Error& error) {
+    report(error.code(), error.what());
+    return static_cast<int>(error.code());
+  } catch (const std::bad_alloc&) {
+    report(ExitCode::out_of_resources, "out of memory");
+    return static_cast<int>(ExitCode::out_of_resources);
+  } catch (const std::exception& error) {
+    report(ExitCode::io, printable(error.what()).c_str());
+    return static_cast<int>(ExitCode::io);
   }
-  const Interrupt interrupt;
-  Console console(*parsed.arguments, interrupt);
-  set_thread_count(parsed.arguments->threads);
-  const ExitCode code = run_verb(*parsed.arguments, console);
-  require_printed();
-  return code;
 }
 
-int report(ExitCode code, const char* what) {
-  std::fprintf(stderr, "relook: %s\n", what);
-  return static_cast<int>(code);
+ExitCode run(const Arguments& arguments) {
+  const Interrupt interrupt;
+  Console console(arguments, interrupt);
+  const auto report = [&](ExitCode code, const char* what) { console.error(code, what); };
+  set_thread_count(arguments.threads);
+  const int code = guarded(
+      [&] {
+        const ExitCode result = run_verb(arguments, console);
+        require_printed();
+        return result;
+      },
+      report);
+  const int traced = guarded(
+      [&] {
+        console.trace().write();
+        return ExitCode::ok;
+      },
+      report);
+  return static_cast<ExitCode>(code == 0 ? traced : code);
 }
 
 }  // namespace
 }  // namespace relook
 
 int main(int argc, char** argv) {
-  using relook::ExitCode;
   relook::limit_image_library_threads();
   relook::set_float_mode();
-  try {
-    return static_cast<int>(relook::run(argc, argv));
-  } catch (const relook::Interrupted& interrupted) {
-    relook::report(ExitCode::ok, "interrupted");
-    return relook::kSignalExitBase + interrupted.signal;
-  } catch (const relook::Error& error) {
-    return relook::report(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return relook::report(ExitCode::out_of_resources, "out of memory");
-  } catch (const std::exception& error) {
-    return relook::report(ExitCode::io, relook::printable(error.what()).c_str());
-  }
+  const auto print_error = [](relook::ExitCode, const char* what) { std::fprintf(stderr, "relook: %s\n", what); };
+  relook::ParsedCommandLine parsed;
+  const int code = relook::guarded(
+      [&] {
+        parsed = relook::parse_command_line(argc, argv);
+        std::fputs(parsed.text.c_str(), stdout);
+        relook::require_printed();
+        return relook::ExitCode::ok;
+      },
+      print_error);
+  if (code != 0 || !parsed.arguments) return code;
+  return relook::guarded([&] { return relook::run(*parsed.arguments); }, print_error);
 }

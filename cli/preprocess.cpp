@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "cache/cache.h"
 #include "engine/cached_image.h"
 #include "engine/render.h"
@@ -9,16 +11,21 @@ namespace relook {
 
 ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   refuse_foreign_folder(arguments.output);
+  std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
   require_writable(arguments.output);
+  span.emplace(console.trace(), "preprocess");
   RenderStats stats;
   Image image = preprocess(loaded.state->scene(), arguments.view.sampling, stats, console.stage("preprocess"));
   console.end_stage();
+  span.emplace(console.trace(), "write cache");
   const std::size_t paths = image.paths.size();
   const CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash);
   console.check_interrupt();
   write_cache(arguments.output, content);
+  span.reset();
+  console.part_done();
 
   Json manifest;
   require_sound(read_manifest(arguments.output, manifest), arguments.output);

@@ -61,6 +61,7 @@ Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& 
 ExitCode run_render(const Arguments& arguments, Console& console) {
   std::optional<Journal> journal;
   if (!arguments.journal.empty()) journal = read_journal(arguments.journal);
+  std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
   FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
@@ -69,14 +70,19 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
     RenderStats ignored;
     if (arguments.layers) before = render(loaded.state->scene(), arguments.view.sampling, ignored);
   };
+  if (journal) span.emplace(console.trace(), "apply journal");
   if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before);
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
+  span.emplace(console.trace(), "render");
   RenderStats stats;
   const Frame frame = render(loaded.state->scene(), arguments.view.sampling, stats, console.stage("render"));
   console.end_stage();
+  span.emplace(console.trace(), "write frame");
   const Bytes bytes = encoded(arguments, *loaded.state, frame, before, meta, console);
   console.check_interrupt();
   write_file(arguments.output, bytes);
+  span.reset();
+  console.part_done();
 
   const std::string hash = hash128(bytes);
   console.line(arguments.output + ": " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + ", " +

@@ -1,8 +1,8 @@
 #include "engine/replay.h"
 
 #include <chrono>
+#include <optional>
 #include <set>
-#include <span>
 
 #include "base/parallel.h"
 #include "edit/apply.h"
@@ -39,6 +39,51 @@ ResidencyOptions residency_options(const Arguments& arguments, const std::filesy
   return options;
 }
 
+/// Of steps first..last of a journal; 0 is the frame before any of them. A drag or wedge has one more than entries.
+std::size_t frame_count(const Journal& journal, std::size_t first, std::size_t last) {
+  std::size_t frames = first == 0 ? 1 : 0;
+  for (std::size_t step = std::max<std::size_t>(first, 1); step <= last; ++step) {
+    const JournalStep& entry = journal.steps[step - 1];
+    frames += 1 + entry.drag.size() + entry.wedge.size();
+  }
+  return frames;
+}
+
+/// The step and, one after the other, the phases that its report times.
+void trace_step(const StepReport& step, std::chrono::steady_clock::time_point start, TraceFile& trace) {
+  const Seconds& seconds = step.seconds;
+  const Counters& counters = step.counters;
+  trace.span(step_label(step.step, step.frame_in_step()) + " " + step.name, start, seconds.total,
+             {{"class", change_class_name(step.change)},
+              {"pixels_changed", counters.pixels_changed},
+              {"samples_affected", counters.samples_affected},
+              {"ray_tests", counters.ray_tests},
+              {"ray_updates", counters.ray_updates},
+              {"shadow_updates", counters.shadow_updates}});
+  for (const auto& [name, duration] : {std::pair{"classify", seconds.classify},
+                                       {"select", seconds.select},
+                                       {"test", seconds.test},
+                                       {"update", seconds.update},
+                                       {"evaluate", seconds.evaluate},
+                                       {"write", seconds.write}}) {
+    if (duration > 0) trace.span(name, start, duration);
+    start += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(duration));
+  }
+  const Resident& resident = step.resident;
+  trace.amounts("resident bytes", {{"ray_paths", resident.ray_paths},
+                                   {"ray_trees", resident.ray_trees},
+                                   {"color_trees", resident.color_trees},
+                                   {"tunnels", resident.tunnels}});
+}
+
+void check_steps(const Arguments& arguments, const Journal& journal) {
+  if (!arguments.steps) return;
+  const std::size_t last = arguments.steps->last.value_or(arguments.steps->first);
+  if (last > journal.steps.size())
+    throw UsageError("--steps: " + std::to_string(last) + " is beyond the " + std::to_string(journal.steps.size()) +
+                     " steps of " + journal.file);
+}
+
 /// What a report says of the cache.
 struct CacheFacts {
   std::string scene_hash;
@@ -54,15 +99,18 @@ class JournalRun {
              const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
              const std::filesystem::path& folder);
 
-  /// Writes the report at the end of the run, or when a signal ends it; an error leaves none. Returns the number of
-  /// pixels that --verify found different.
-  std::uint64_t run();
+  /// `place`: of this run among `runs`, from 0. Writes the report at the end of the run, or when a signal ends it; an
+  /// error leaves none. Returns the number of pixels that --verify found different.
+  std::uint64_t run(std::size_t place, std::size_t runs);
   [[nodiscard]] const RunReport& report() const { return report_; }
 
  private:
   void run_steps();
+  void apply_to(std::size_t steps);
+  void start_late();
   void resume();
   void base_step();
+  void show_part(const StepReport& entry);
   void journal_step(const JournalStep& step);
   template <class Work>
   ChangeClass frame(StepReport entry, const Work& work);
@@ -78,7 +126,10 @@ class JournalRun {
   Replayer replayer_;
   RunReport report_;
   std::uint64_t pixels_different_ = 0, ray_trees_rebuilt_ = 0;
-  std::size_t steps_done_ = 0;  // of the journal
+  std::size_t steps_done_ = 0;                  // of the journal
+  std::size_t first_step_ = 0, last_step_ = 0;  // whose frames are asked for
+  std::size_t frames_ = 0;                      // of these steps
+  double runs_before_ = 0, runs_ = 1;           // of the command, for its progress
 };
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
@@ -102,13 +153,19 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.float_frames = arguments.float_frames;
   report_.layers = arguments.layers;
   report_.verify_percent = arguments.verify_percent;
+  report_.step_range = arguments.steps;
+  first_step_ = arguments.steps ? arguments.steps->first : 0;
+  last_step_ = arguments.steps ? arguments.steps->last.value_or(journal.steps.size()) : journal.steps.size();
+  frames_ = frame_count(journal, first_step_, last_step_);
   report_.threads = thread_count();
   report_.cache = cache.sizes;
   report_.cache_damage = cache.damage;
   ray_trees_rebuilt_ = cache.ray_trees_rebuilt;
 }
 
-std::uint64_t JournalRun::run() {
+std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
+  runs_before_ = static_cast<double>(place);
+  runs_ = static_cast<double>(runs);
   try {
     run_steps();
   } catch (const Interrupted&) {
@@ -122,11 +179,30 @@ std::uint64_t JournalRun::run() {
 }
 
 void JournalRun::run_steps() {
-  if (folder_.kept().empty())
+  if (!folder_.kept().empty())
+    resume();
+  else if (first_step_ == 0)
     base_step();
   else
-    resume();
-  for (const JournalStep& step : std::span(journal_.steps).subspan(steps_done_)) journal_step(step);
+    start_late();
+  while (steps_done_ < last_step_) journal_step(journal_.steps[steps_done_]);
+  console_.part_done();
+}
+
+/// Goes to where the scene is after the first `steps` steps.
+void JournalRun::apply_to(std::size_t steps) {
+  const TraceScope span = console_.span("edits before");
+  steps_done_ = steps;
+  for (const Edit& edit : edits_to(journal_, steps)) {
+    console_.check_interrupt();
+    (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
+  }
+}
+
+/// Without a frame of what lies before the first step asked for.
+void JournalRun::start_late() {
+  apply_to(first_step_ - 1);
+  if (arguments_.baseline && !arguments_.verify_percent) full_render();
 }
 
 /// Takes over what is in the folder already, and goes where that left off.
@@ -136,20 +212,26 @@ void JournalRun::resume() {
   for (const Json& entry : report_.resumed)
     if (entry.at("verify").is_object())
       pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
-  steps_done_ = std::min(report_.resumed.back().at("step").get<std::size_t>(), journal_.steps.size());
-  for (const Edit& edit : edits_to(journal_, steps_done_)) {
-    console_.check_interrupt();
-    (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
-  }
+  apply_to(std::min(report_.resumed.back().at("step").get<std::size_t>(), journal_.steps.size()));
   if (arguments_.baseline || arguments_.verify_percent) full_render();
   report_.resume_seconds = seconds_since(start);
   console_.line("resumed after step " + std::to_string(steps_done_) + ": " + std::to_string(report_.resumed.size()) +
                 " finished frames kept");
 }
 
+/// The share of the run that a frame is, and what it is.
+void JournalRun::show_part(const StepReport& entry) {
+  const auto done = static_cast<double>(report_.resumed.size() + report_.steps.size());
+  const auto all = static_cast<double>(frames_);
+  const auto share = [&](double frames) { return (runs_before_ + frames / all) / runs_; };
+  console_.part(share(done), share(done + 1),
+                "step " + step_label(entry.step, entry.frame_in_step()) + " " + entry.name);
+}
+
 void JournalRun::base_step() {
   StepReport entry;
   entry.name = "base";
+  show_part(entry);
   const Frame& frame = replayer_.image().frame;
   entry.counters.samples_total = std::uint64_t{frame.width} * frame.height * report_.view.samples;
   entry.counters.rebuilt.ray_trees = ray_trees_rebuilt_;
@@ -162,6 +244,7 @@ template <class Work>
 ChangeClass JournalRun::frame(StepReport entry, const Work& work) {
   const auto start = std::chrono::steady_clock::now();
   console_.check_interrupt();
+  show_part(entry);
   const StepResult result = work();
   if (entry.reasons.empty()) {
     entry.change = result.classification.change;
@@ -215,12 +298,14 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   report_.steps.push_back(std::move(entry));
   if (arguments_.verify_percent) verify(report_.steps.back());
   folder_.note_step(report_.steps.back());
+  trace_step(report_.steps.back(), start, console_.trace());
   print(report_.steps.back());
 }
 
 Frame JournalRun::full_render() {
   const SceneState fresh(replayer_.state().document(), report_.camera, replayer_.state().pyramids());
   RenderStats stats;
+  const TraceScope span = console_.span("full render");
   Frame frame = render(fresh.scene(), report_.view, stats, console_.stage("full render"));
   console_.end_stage();
   if (!report_.full_render_seconds) report_.full_render_seconds = stats.build_seconds + stats.render_seconds;
@@ -254,6 +339,7 @@ std::vector<Journal> read_journals(const Arguments& arguments) {
   std::set<std::string> names;
   for (std::size_t i = 1; i < arguments.inputs.size(); ++i) {
     journals.push_back(read_journal(arguments.inputs[i]));
+    check_steps(arguments, journals.back());
     if (!names.insert(journals.back().name).second)
       throw UsageError("two journals are called \"" + journals.back().name + "\": their runs would share a folder");
   }
@@ -279,6 +365,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     if (has_several) folders.back() /= journal.name;
     RunFolder::refuse_foreign(folders.back());
   }
+  std::optional<TraceScope> reading(std::in_place, console.trace(), "read cache");
   MendedCache mended = arguments.strict ? MendedCache{load_cache(cache), {}, 0} : load_mended_cache(cache);
   for (std::string& damage : mended.damage) damage = cache + ": " + damage + "; traced again";
   console.warn(mended.damage);
@@ -293,14 +380,17 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   require_sound(read_manifest(cache, manifest), cache);
   const CacheFacts facts{content.scene_hash, cache_sizes(manifest), mended.damage, mended.ray_trees_rebuilt};
 
+  reading.reset();
   std::uint64_t pixels_different = 0;
+  std::optional<TraceScope> restoring(std::in_place, console.trace(), "restore image, check journals");
   RestoredImage restored = restore(has_several ? content : std::move(content), cache);
   for (const Journal& journal : journals) check_journal(*restored.state, journal);
+  restoring.reset();
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
     if (i > 0) restored = restore(i + 1 < journals.size() ? content : std::move(content), cache);
     JournalRun run(arguments, console, journals[i], std::move(restored), facts, view, folders[i]);
-    pixels_different += run.run();
+    pixels_different += run.run(i, journals.size());
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
   }
   console.json({{"runs", std::move(runs)}, {"pixels_different", pixels_different}});

@@ -69,6 +69,7 @@ std::optional<std::string> run_hash(const Arguments& arguments, const Journal& j
   options.float_frames = arguments.float_frames;
   options.layers = arguments.layers;
   options.verify_percent = arguments.verify_percent;
+  options.step_range = arguments.steps;
   const Json run{{"program", program_version()},
                  {"cache", manifest["hash"]},
                  {"journal", journal.hash},

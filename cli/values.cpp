@@ -64,4 +64,16 @@ double parse_percent(std::string_view option, std::string_view text, bool zero_a
   return *value;
 }
 
+StepRange parse_steps(std::string_view option, std::string_view text) {
+  const std::string_view expected = "a range of steps like 3, 2-5 or 4-";
+  const std::size_t dash = text.find('-');
+  const auto first = whole_number<std::uint32_t>(text.substr(0, dash));
+  if (!first) refuse(option, text, expected);
+  if (dash == std::string_view::npos) return {*first, first};
+  if (dash + 1 == text.size()) return {*first, std::nullopt};
+  const auto last = whole_number<std::uint32_t>(text.substr(dash + 1));
+  if (!last || *last < *first) refuse(option, text, expected);
+  return {*first, last};
+}
+
 }  // namespace relook

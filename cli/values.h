@@ -5,6 +5,8 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/report.h"
+
 namespace relook {
 
 /// "512", "64K", "300M", "2G", "1.5G" (powers of 1024), with or without a final "B". In bytes.
@@ -13,5 +15,8 @@ namespace relook {
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_resolution(std::string_view option, std::string_view text);
 /// "50" or "50%": low < value <= 100 or, with `zero`, low <= value.
 [[nodiscard]] double parse_percent(std::string_view option, std::string_view text, bool zero_allowed);
+
+/// "3", "2-5", "4-": first <= last.
+[[nodiscard]] StepRange parse_steps(std::string_view option, std::string_view text);
 
 }  // namespace relook

@@ -60,6 +60,11 @@ Json verify_json(const std::optional<VerifyResult>& verify) {
   return {{"pixels_compared", verify->pixels_compared}, {"pixels_different", verify->pixels_different}};
 }
 
+Json range_json(const std::optional<StepRange>& range) {
+  if (!range) return nullptr;
+  return std::to_string(range->first) + "-" + (range->last ? std::to_string(*range->last) : "");
+}
+
 Json regions_json(const RegionCounters& regions) { return {{"visited", regions.visited}, {"culled", regions.culled}}; }
 
 }  // namespace
@@ -114,7 +119,8 @@ Json options_json(const RunReport& report) {
           {"shadow_bits", report.view.shadow_bits},
           {"float", report.float_frames},
           {"aovs", report.layers},
-          {"verify", or_null(report.verify_percent)}};
+          {"verify", or_null(report.verify_percent)},
+          {"steps", range_json(report.step_range)}};
 }
 
 std::string_view program_version() { return RELOOK_VERSION; }

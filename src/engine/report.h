@@ -42,6 +42,12 @@ struct StepReport {
   std::optional<VerifyResult> verify;
 };
 
+/// Steps of a journal, from 1; 0 is the frame before any of them.
+struct StepRange {
+  std::uint32_t first = 0;
+  std::optional<std::uint32_t> last;  // none: to the end
+};
+
 /// Structure options as given; frames never depend on them.
 struct StructureOptions {
   std::optional<std::uint64_t> memory_bytes;
@@ -68,6 +74,7 @@ struct RunReport {
   bool float_frames = false;
   bool layers = false;  // --aovs
   std::optional<double> verify_percent;
+  std::optional<StepRange> step_range;  // none: all
   std::size_t threads = 0;
   std::optional<double> full_render_seconds;
   CacheSizes cache;
