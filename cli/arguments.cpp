@@ -105,7 +105,8 @@ void add_inputs(CLI::App& verb, Arguments& arguments, const char* name, const ch
 void add_compare(CLI::App& app, Arguments& arguments) {
   CLI::App& compare = *app.add_subcommand("compare", "Compare frames, or runs, with the first of them");
   add_inputs(compare, arguments, "A B", "Frames (.exr), or runs or folders of frames", 2, kMostCompared);
-  add_output(compare, arguments, "Folder for compare.json");
+  add_output(compare, arguments, "Folder for compare.json and compare.html");
+  compare.add_option("--html", arguments.html, "Page to write: tables, and pictures of the frames that differ");
   compare.add_flag("--exact", arguments.exact_only, "Only what is exact and quick: no PSNR, SSIM and FLIP");
   Thresholds& limits = arguments.thresholds;
   const auto add = [&](const char* name, auto& value, const char* help) { compare.add_option(name, value, help); };

@@ -54,6 +54,7 @@ struct Arguments {
   Thresholds thresholds;    // compare
   bool exact_only = false;  // compare: no PSNR, SSIM, FLIP
   std::string json_file;    // compare: --json=FILE, or ""
+  std::string html;         // compare: file, or ""
 };
 
 /// The arguments, or what to print instead (--help, --version). Throws UsageError.

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "compare_inputs.h"
+#include "compare_page.h"
 #include "engine/run_table.h"
 #include "verbs.h"
 
@@ -31,7 +32,7 @@ std::string text(const std::string& name, const FrameComparison& comparison) {
   std::string line = text(name, comparison.difference);
   if (comparison.psnr) line += ", PSNR " + short_number(*comparison.psnr) + " dB";
   if (comparison.worst && comparison.ssim) line += ", SSIM " + short_number(*comparison.ssim);
-  if (comparison.flip) line += ", FLIP " + short_number(comparison.flip->mean());
+  if (comparison.flip) line += ", FLIP " + short_number(comparison.flip->mean);
   if (const auto& worst = comparison.worst)
     line += ", worst at " + std::to_string(worst->x) + "," + std::to_string(worst->y) + ": " + text(worst->a) +
             " and " + text(worst->b);
@@ -165,6 +166,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   const bool are_folders = check_kinds(inputs);
   Json pairs = Json::array();
   Verdict verdict = Verdict::equal;
+  ComparePage page(inputs[0]);
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     const auto share = [&](std::size_t done) {
       return static_cast<double>(done) / static_cast<double>(inputs.size() - 1);
@@ -174,6 +176,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
                                             : compare_files(inputs[0], inputs[i], arguments);
     print_pair(pair, inputs.size() > 2 ? printable(inputs[i]) + ": " : "", are_folders, console);
     warn_of_pair(pair, arguments, inputs[i], console);
+    page.add_pair(inputs[i], pair);
     pairs.push_back(pair_json(printable(inputs[0]), printable(inputs[i]), pair));
     verdict = std::max(verdict, pair.verdict);
   }
@@ -182,10 +185,13 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   if (are_folders) {
     if (const std::optional<RunTable> table = read_table(inputs, console)) {
       print_table(*table, console);
+      page.set_runs(*table);
       result["runs"] = run_table_json(*table);
     }
   }
   write_json(arguments, result, console);
+  if (!arguments.html.empty()) write_file(arguments.html, page.text());
+  if (!arguments.output.empty()) write_file(std::filesystem::path(arguments.output) / "compare.html", page.text());
   return verdict == Verdict::failure ? ExitCode::difference : ExitCode::ok;
 }
 

@@ -1,10 +1,12 @@
 #include "compare_inputs.h"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 
 #include "base/error.h"
 #include "engine/frame_file.h"
+#include "engine/preview.h"
 
 namespace relook {
 namespace {
@@ -17,20 +19,35 @@ std::set<std::string> exr_files(const std::filesystem::path& folder) {
   return names;
 }
 
+Pictures pictures_of(const Frame& a, const Frame& b, const FrameComparison& comparison) {
+  Frame errors = a;
+  for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
+    float error = std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(Rgba)) == 0 ? 0.0F : 1.0F;
+    if (!comparison.flip_errors.empty()) error = comparison.flip_errors[i];
+    errors.pixels[i] = Rgba(3 * error, 3 * error - 1, 3 * error - 2, 1);
+  }
+  return {encode_png(a), encode_png(b), encode_png(errors)};
+}
+
 void add_frame(PairComparison& pair, std::string name, FrameComparison comparison) {
+  comparison.flip_errors = {};
   pair.total += comparison.difference;
   pair.verdict = std::max(pair.verdict, comparison.verdict);
   pair.frames.emplace_back(std::move(name), std::move(comparison));
 }
 
-FrameComparison compare_two(const std::filesystem::path& a, const std::filesystem::path& b,
-                            const Arguments& arguments) {
+void compare_two(const std::string& name, const std::filesystem::path& a, const std::filesystem::path& b,
+                 const Arguments& arguments, PairComparison& pair) {
   const Frame first = decode_exr(a), second = decode_exr(b);
   if (first.width != second.width || first.height != second.height)
     throw InputError(b.string(), "",
                      std::to_string(second.width) + "x" + std::to_string(second.height) + " pixels, not the " +
                          std::to_string(first.width) + "x" + std::to_string(first.height) + " of " + a.string());
-  return compare_closely(first, second, arguments.thresholds, !arguments.exact_only);
+  FrameComparison comparison = compare_closely(first, second, arguments.thresholds, !arguments.exact_only);
+  const bool has_page = !arguments.html.empty() || !arguments.output.empty();
+  if (has_page && comparison.worst && pair.pictures.size() < kMostPictures)
+    pair.pictures[name] = pictures_of(first, second, comparison);
+  add_frame(pair, name, std::move(comparison));
 }
 
 }  // namespace
@@ -46,7 +63,7 @@ FrameFolder frame_folder(const std::filesystem::path& path) {
 PairComparison compare_files(const std::filesystem::path& a, const std::filesystem::path& b,
                              const Arguments& arguments) {
   PairComparison pair;
-  add_frame(pair, b.filename().string(), compare_two(a, b, arguments));
+  compare_two(b.filename().string(), a, b, arguments, pair);
   return pair;
 }
 
@@ -60,8 +77,7 @@ PairComparison compare_folders(const std::filesystem::path& a, const std::filesy
   double done = 0;
   for (const std::string& name : first.names) {
     progress(done++ / static_cast<double>(first.names.size()));
-    if (second.names.contains(name))
-      add_frame(pair, name, compare_two(first.folder / name, second.folder / name, arguments));
+    if (second.names.contains(name)) compare_two(name, first.folder / name, second.folder / name, arguments, pair);
   }
   console.end_stage();
   return pair;

@@ -77,6 +77,33 @@ TEST_F(CompareFrames, results_are_json_on_stdout_or_in_a_file) {
   EXPECT_TRUE(exact["frames"]["b.exr"]["flip"].is_null());
 }
 
+TEST_F(CompareFrames, the_page_is_whole_and_takes_names_as_text) {
+  const auto page = [&](const std::string& name) {
+    const Bytes bytes = read_file(folder_ / name);
+    return std::string(text_of(bytes));
+  };
+  const std::string hostile = "<img src=x onerror=alert(1)>&\"'.exr";
+  std::filesystem::create_directories(folder_ / "one");
+  std::filesystem::create_directories(folder_ / "two");
+  std::filesystem::copy(at("a.exr"), folder_ / "one" / hostile);
+  std::filesystem::copy(at("b.exr"), folder_ / "two" / hostile);
+  EXPECT_EQ(compare({at("one"), at("two"), "--html", at("page.html")}).exit_code, 10);
+  const std::string text = page("page.html");
+  EXPECT_EQ(text.find("<img src=x"), std::string::npos);
+  EXPECT_NE(text.find("&lt;img src=x onerror=alert(1)&gt;&amp;&quot;'.exr"), std::string::npos) << text.substr(0, 3000);
+  EXPECT_NE(text.find("Content-Security-Policy\" content=\"default-src 'none'"), std::string::npos);
+  EXPECT_EQ(text.find("<script"), std::string::npos);
+  std::size_t pictures = 0;
+  for (std::size_t at = text.find("data:image/png;base64,"); at != std::string::npos;
+       at = text.find("data:image/png;base64,", at + 1))
+    ++pictures;
+  EXPECT_EQ(pictures, 3U) << "both frames and where they differ";
+  EXPECT_NE(text.find("3,5: 0.5 0.25 0.125 1 and 0.75 0.25 0.125 1"), std::string::npos);
+  EXPECT_TRUE(text.ends_with("</html>\n"));
+  EXPECT_EQ(compare({at("a.exr"), at("a.exr"), "-o", at("report")}).exit_code, 0);
+  EXPECT_EQ(page("report/compare.html").find("data:image"), std::string::npos) << "no pictures of equal frames";
+}
+
 TEST_F(CompareFrames, several_frames_are_compared_with_the_first) {
   const Json result = parse_json(compare({at("a.exr"), at("a.exr"), at("b.exr"), "--json"}).output, "stdout");
   ASSERT_EQ(result["pairs"].size(), 2U);

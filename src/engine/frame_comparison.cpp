@@ -40,7 +40,7 @@ bool is_exceeded(const FrameComparison& comparison, const Limits& limits, std::u
   const bool has_many =
       static_cast<double>(above) > limits.percent / 100 * static_cast<double>(difference.pixels_compared);
   const bool has_hard = limits.hard && difference.max_error > *limits.hard;
-  const bool looks_different = limits.flip && comparison.flip && comparison.flip->mean() > *limits.flip;
+  const bool looks_different = limits.flip && comparison.flip && comparison.flip->mean > *limits.flip;
   return has_many || has_hard || looks_different || !std::isfinite(difference.max_error);
 }
 
@@ -100,9 +100,9 @@ Json worst_json(const std::optional<WorstPixel>& worst) {
 Json flip_json(const FrameComparison& comparison) {
   if (comparison.difference.pixels_different == 0) return {{"mean", 0}, {"max", 0}};
   if (!comparison.flip) return nullptr;
-  const FlipErrors& flip = *comparison.flip;
-  return {{"mean", flip.mean()},
-          {"max", *std::ranges::max_element(flip.errors)},
+  const FlipSummary& flip = *comparison.flip;
+  return {{"mean", flip.mean},
+          {"max", flip.largest},
           {"start_exposure", flip.exposures.start},
           {"stop_exposure", flip.exposures.stop},
           {"exposures", flip.exposures.count}};
@@ -124,7 +124,10 @@ FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds
   if (!is_equal && looks) {
     comparison.psnr = psnr(a, b, comparison.difference);
     comparison.ssim = ssim(a, b);
-    comparison.flip = hdr_flip(a, b);
+    if (std::optional<FlipErrors> flip = hdr_flip(a, b)) {
+      comparison.flip = {flip->mean(), double{*std::ranges::max_element(flip->errors)}, flip->exposures};
+      comparison.flip_errors = std::move(flip->errors);
+    }
   }
   comparison.verdict = verdict_of(comparison, thresholds);
   return comparison;

@@ -33,12 +33,18 @@ struct WorstPixel {
   double error = 0;  // infinite when not finite; 0 when only bits differ, as in 0 and -0
 };
 
+struct FlipSummary {
+  double mean = 0, largest = 0;
+  ExposureRange exposures;
+};
+
 struct FrameComparison {
   FrameDifference difference;
   std::uint64_t not_finite_a = 0, not_finite_b = 0;  // pixels with NaN or infinite channels
   std::optional<WorstPixel> worst;                   // when a pixel differs
   std::optional<double> psnr, ssim;                  // see engine/similarity.h
-  std::optional<FlipErrors> flip;                    // a is the reference
+  std::optional<FlipSummary> flip;                   // a is the reference
+  std::vector<float> flip_errors;                    // [height * width], or empty
   std::uint64_t pixels_above_fail = 0, pixels_above_warn = 0;
   Verdict verdict = Verdict::equal;
 };

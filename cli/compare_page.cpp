@@ -1,0 +1,168 @@
+#include "compare_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.h"
+#include "engine/report.h"
+
+namespace relook {
+namespace {
+
+constexpr const char* kHead =
+    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src "
+    "data:; base-uri 'none'; form-action 'none'\">\n"
+    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>relook compare</title>\n<style>\n"
+    ":root { color-scheme: light dark; --line: #d2d2ce; --soft: #5b5e63; --good: #e3f4e6; --bad: #fbe6df; }\n"
+    "@media (prefers-color-scheme: dark) { :root { --line: #3d4044; --soft: #a3a7ad; --good: #1d3a24; --bad: #4a261c; "
+    "} }\n"
+    "body { font: 14px/1.45 system-ui, sans-serif; margin: 1.5rem; }\n"
+    "h1 { font-size: 1.25rem; } h2 { font-size: 1.15rem; } h3 { font-size: 1rem; margin-bottom: .3rem; }\n"
+    "table { border-collapse: collapse; margin: .5rem 0 1.5rem; }\n"
+    "th, td { border: 1px solid var(--line); padding: .15rem .5rem; text-align: right; }\n"
+    "th { font-weight: 600; } th.name, td.name, h2, h3 { text-align: left; overflow-wrap: anywhere; }\n"
+    ".equal, .within { background: var(--good); } .failure, .warning { background: var(--bad); }\n"
+    "figure { display: inline-block; margin: 0 .5rem .5rem 0; max-width: 32%; } img { max-width: 100%; display: "
+    "block;\n"
+    "image-rendering: pixelated; background: #000; } figcaption { color: var(--soft); }\n"
+    "</style>\n</head>\n<body>\n<h1>relook compare</h1>\n";
+
+/// Text for elements and quoted attributes.
+std::string html(std::string_view text) {
+  std::string result;
+  for (const char c : printable(text)) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string base64(BytesView bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (i + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63U];
+  }
+  return text;
+}
+
+std::string number(double value) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.4g", value);
+  return digits;
+}
+
+std::string number(const std::optional<double>& value) { return value ? number(*value) : "\u2013"; }
+
+std::string cell(std::string_view text, const char* kind = "") {
+  return std::string(*kind == 0 ? "<td>" : "<td class=\"" + std::string(kind) + "\">") + html(text) + "</td>";
+}
+
+std::string head(std::string_view text) { return "<th class=\"name\">" + html(text) + "</th>"; }
+
+std::string frame_row(const std::string& name, const FrameComparison& comparison) {
+  const FrameDifference& difference = comparison.difference;
+  const std::string verdict(verdict_name(comparison.verdict));
+  std::string row = "<tr>" + head(name) + cell(verdict, verdict.c_str()) +
+                    cell(std::to_string(difference.pixels_different)) + cell(number(difference.max_error)) +
+                    cell(number(difference.rms_error)) + cell(number(comparison.psnr)) + cell(number(comparison.ssim));
+  std::optional<double> mean, largest;
+  if (!comparison.worst) mean = largest = 0;
+  if (comparison.flip) mean = comparison.flip->mean, largest = comparison.flip->largest;
+  row += cell(number(mean)) + cell(number(largest));
+  std::string place;
+  if (const auto& worst = comparison.worst) {
+    place = std::to_string(worst->x) + "," + std::to_string(worst->y) + ":";
+    for (const Rgba* pixel : {&worst->a, &worst->b}) {
+      if (pixel == &worst->b) place += " and";
+      for (const float value : {pixel->r, pixel->g, pixel->b, pixel->a}) place += " " + number(double{value});
+    }
+  }
+  return row + cell(place, "name") + "</tr>\n";
+}
+
+std::string figure(const Bytes& png, std::string_view caption) {
+  return "<figure><img alt=\"" + html(caption) + "\" src=\"data:image/png;base64," + base64(png) + "\"><figcaption>" +
+         html(caption) + "</figcaption></figure>";
+}
+
+std::string column_head(const RunTable::Column& column) {
+  std::string text = column.run;
+  for (const auto& [name, value] : column.settings) text += ", " + name + " " + value;
+  if (column.full_render_seconds) text += ", full render " + number(*column.full_render_seconds) + " s";
+  return "<th>" + html(text) + "</th>";
+}
+
+std::string measure_table(const RunTable& table, std::size_t measure) {
+  std::string text = "<table>\n<tr>" + head("step") + head("name") + head("class");
+  for (const RunTable::Column& column : table.columns) text += column_head(column);
+  text += "</tr>\n";
+  for (const RunTable::Row& row : table.rows) {
+    text += "<tr>" + head(row.label) + cell(row.name, "name") + cell(row.change_class, "name");
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      const bool has_value = i < row.values.size() && row.values[i];
+      const double value = has_value ? (*row.values[i])[measure] : 0;
+      const std::string shown =
+          kMeasures[measure].is_time ? number(value) : std::to_string(static_cast<std::uint64_t>(value));
+      text += cell(has_value ? shown : "\u2013");
+    }
+    text += "</tr>\n";
+  }
+  return text + "</table>\n";
+}
+
+}  // namespace
+
+void ComparePage::add_pair(const std::string& b, const PairComparison& pair) {
+  pairs_ += "<h2>" + html(a_) + " and " + html(b) + ": " + html(verdict_name(pair.verdict)) + "</h2>\n<table>\n<tr>";
+  for (const char* name : {"frame", "verdict", "pixels different", "max error", "RMS error", "PSNR (dB)", "SSIM",
+                           "FLIP, mean", "FLIP, largest", "worst pixel: channels of both"})
+    pairs_ += head(name);
+  pairs_ += "</tr>\n";
+  for (const auto& [name, comparison] : pair.frames) pairs_ += frame_row(name, comparison);
+  for (const std::string& name : pair.missing)
+    pairs_ += "<tr>" + head(name) + cell("in one only", "failure") + "</tr>\n";
+  pairs_ += "</table>\n";
+  for (const auto& [name, pictures] : pair.pictures)
+    pairs_ += "<h3>" + html(name) + "</h3>\n" + figure(pictures.a, a_) + figure(pictures.b, b) +
+              figure(pictures.errors, "errors, black: none, white: largest") + "\n";
+}
+
+void ComparePage::set_runs(const RunTable& table) {
+  runs_ = "<h2>Runs side by side</h2>\n";
+  std::string same;
+  for (std::size_t measure = 0; measure < kMeasures.size(); ++measure) {
+    const std::string name(kMeasures[measure].name);
+    if (!kMeasures[measure].is_time && table.is_same(measure))
+      same += (same.empty() ? "" : ", ") + name;
+    else
+      runs_ += "<h3>" + html(name) + (kMeasures[measure].is_time && measure > 0 ? ", seconds" : "") + "</h3>\n" +
+               measure_table(table, measure);
+  }
+  if (!same.empty()) runs_ += "<p>The same in all: " + html(same) + "</p>\n";
+}
+
+std::string ComparePage::text() const {
+  return kHead + pairs_ + runs_ + "<p>relook " + html(program_version()) + "</p>\n</body>\n</html>\n";
+}
+
+}  // namespace relook

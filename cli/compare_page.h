@@ -1,0 +1,23 @@
+// compare.html: the frames' figures, pictures of those that differ, and runs side by side. One file that needs nothing
+// else, no script in it; whatever comes from files is text.
+#pragma once
+#include <string>
+
+#include "compare_inputs.h"
+#include "engine/run_table.h"
+
+namespace relook {
+
+class ComparePage {
+ public:
+  /// `a`: what all else is compared with.
+  explicit ComparePage(std::string a) : a_(std::move(a)) {}
+  void add_pair(const std::string& b, const PairComparison& pair);
+  void set_runs(const RunTable& table);
+  [[nodiscard]] std::string text() const;
+
+ private:
+  std::string a_, pairs_, runs_;  // HTML
+};
+
+}  // namespace relook
