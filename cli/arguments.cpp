@@ -120,6 +120,35 @@ void add_compare(CLI::App& app, Arguments& arguments) {
   add("--warnflip", limits.warn_flip, "As --failflip");
 }
 
+constexpr std::array<std::string_view, 4> kJournalSources{"diff", "variants", "animation", "wedge"};
+
+void add_journal(CLI::App& app, Arguments& arguments, RawTexts& raw) {
+  CLI::App& journal = *app.add_subcommand("journal", "Write a journal from what a scene contains");
+  journal.require_subcommand(1);
+  CLI::App& diff = *journal.add_subcommand("diff", "The step between two exports of a scene");
+  CLI::App& variants = *journal.add_subcommand("variants", "A step for each of the scene's material variants");
+  CLI::App& animation = *journal.add_subcommand("animation", "A frame for each sample of an animation of the scene");
+  CLI::App& wedge = *journal.add_subcommand("wedge", "A frame for each value of one parameter");
+  add_inputs(diff, arguments, "A B", "glTF scene, and the same edited", 2, 2);
+  add_inputs(variants, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
+  add_inputs(animation, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
+  add_inputs(wedge, arguments, "SCENE POINTER VALUES",
+             "Scene, a parameter's path in its look document, values (JSON or names) or ranges A..B:N", 3, 10000);
+  SampleTimes& times = arguments.sample_times;
+  animation.add_option("--fps", times.frames_per_second, "Frames a second; 24")->check(CLI::Range(1e-3, 1e4));
+  animation.add_option("--from", times.from, "First time in seconds; the first keyframe's")
+      ->check(CLI::Range(0.0, 1e6));
+  animation.add_option("--to", times.to, "Last time in seconds; the last keyframe's")->check(CLI::Range(0.0, 1e6));
+  animation.add_option("--animation", arguments.animation, "Name or number of the animation; the first");
+  for (CLI::App* source : journal.get_subcommands(nullptr)) {
+    add_output(*source, arguments, "Journal to write")->required();
+    source->add_option("--camera", arguments.view.camera, "Camera that the journal is for, which it cannot move");
+    add_look_patch(*source, arguments);
+    add_lights(*source, raw);
+    add_common(*source, arguments, raw);
+  }
+}
+
 void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   constexpr int kMostJournals = 10000;
   CLI::App& render = *app.add_subcommand("render", "Render a scene, edited by a journal perhaps");
@@ -180,6 +209,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
 
   CLI::App& tune = *app.add_subcommand("tune", "Say what each eviction policy and budget would have cost a replay");
   add_inputs(tune, arguments, "ACCESS_LOG", "What replay --access-log wrote", 1, 1);
+  add_journal(app, arguments, raw);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 
   CLI::App& completions = *app.add_subcommand("completions", "Print completions for a shell");
@@ -189,8 +219,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
 }
 
-constexpr std::array<std::string_view, 8> kVerbs{"render",  "preprocess", "replay", "compare",
-                                                 "inspect", "check",      "tune",   "completions"};
+constexpr std::array<std::string_view, 9> kVerbs{"render", "preprocess", "replay",  "compare",    "inspect",
+                                                 "check",  "tune",       "journal", "completions"};
 constexpr std::array<std::string_view, 5> kProgressStyles{"auto", "plain", "json", "openjd", "none"};
 
 /// The place of `word` among `choices`. Throws UsageError with the nearest one.
@@ -273,6 +303,17 @@ void resolve_inspect(const CLI::App& verb, Arguments& arguments) {
   arguments.print_look = verb.count("--look") > 0 && arguments.scene.empty();
 }
 
+/// The command line with values marked by a space that CLI11 would take for an option (-1..1:5) or a list ([1,0,0]).
+std::vector<std::string> marked_values(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool is_number = word.size() > 1 && word[0] == '-' && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+    words.push_back(is_number || word.starts_with('[') ? " " + word : word);
+  }
+  return words;
+}
+
 }  // namespace
 
 std::vector<VerbHelp> command_line_help() {
@@ -304,8 +345,17 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   add_verbs(app, arguments, raw);
   if (argc < 2) throw UsageError("a verb is required; see relook --help");
   if (argv[1][0] != '-') arguments.verb = static_cast<Verb>(place_of(argv[1], kVerbs, "verb"));
+  const bool is_journal = arguments.verb == Verb::journal && argv[1][0] != '-';
+  if (is_journal && argc > 2 && argv[2][0] != '-')
+    arguments.journal_source = static_cast<JournalSource>(place_of(argv[2], kJournalSources, "kind of journal"));
   try {
-    app.parse(argc, argv);
+    if (is_journal) {
+      std::vector<std::string> words = marked_values(argc, argv);
+      std::reverse(words.begin(), words.end());  // as CLI11 wants them
+      app.parse(std::move(words));
+    } else {
+      app.parse(argc, argv);
+    }
   } catch (const CLI::CallForHelp&) {
     const auto chosen = app.get_subcommands();
     return {std::nullopt, chosen.empty() ? app.help() : chosen.front()->help()};

@@ -6,14 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "edit/journal_draft.h"
 #include "engine/frame_comparison.h"
 #include "engine/image.h"
 #include "engine/report.h"
 
 namespace relook {
 
-enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check, tune, completions };
+enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check, tune, journal, completions };
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };
+enum class JournalSource : std::uint8_t { diff, variants, animation, wedge };
 
 struct ViewArguments {
   std::string camera;  // NAME | auto | EYE:TARGET:FOV; "": the scene's own
@@ -51,10 +53,13 @@ struct Arguments {
   bool print_look = false;         // inspect
   std::string scene;               // inspect, replay, check
 
-  Thresholds thresholds;    // compare
-  bool exact_only = false;  // compare: no PSNR, SSIM, FLIP
-  std::string json_file;    // compare: --json=FILE, or ""
-  std::string html;         // compare: file, or ""
+  Thresholds thresholds;                               // compare
+  bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP
+  std::string json_file;                               // compare: --json=FILE, or ""
+  std::string html;                                    // compare: file, or ""
+  JournalSource journal_source = JournalSource::diff;  // journal; the rest: of an animation
+  SampleTimes sample_times;
+  std::string animation;  // name or number; "": the first
 };
 
 /// The arguments, or what to print instead (--help, --version). Throws UsageError.

@@ -140,15 +140,19 @@ JournalStep read_step(const JsonView& view, std::size_t number) {
 }  // namespace
 
 Journal read_journal(const std::filesystem::path& path) {
+  const Bytes bytes = read_file(path);
+  return parse_journal(text_of(bytes), path);
+}
+
+Journal parse_journal(std::string_view text, const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 2> kKeys{"relook", "steps"};
   constexpr std::array<std::string_view, 1> kVersions{"journal/1"};
-  const Bytes bytes = read_file(path);
   Journal journal;
   journal.path = path;
   journal.file = path.string();
   journal.name = path.stem().string();
-  journal.hash = hash128(bytes);
-  const Json json = parse_json(text_of(bytes), journal.file);
+  journal.hash = hash128(bytes_of(text));
+  const Json json = parse_json(text, journal.file);
   const JsonView view(json, journal.file);
   view.only_keys(kKeys);
   (void)view.at("relook").one_of(kVersions);

@@ -47,6 +47,8 @@ struct Journal {
 
 /// Throws InputError{file, pointer, ...}.
 [[nodiscard]] Journal read_journal(const std::filesystem::path& path);
+/// A journal that is not in a file yet: `path` is where it will be.
+[[nodiscard]] Journal parse_journal(std::string_view text, const std::filesystem::path& path);
 /// A bare RFC 6902 array (--look).
 [[nodiscard]] Edit read_patch(const std::filesystem::path& path);
 

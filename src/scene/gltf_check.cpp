@@ -11,7 +11,7 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 13> kSupportedExtensions = {
+constexpr std::array<std::string_view, 14> kSupportedExtensions = {
     "KHR_lights_punctual",
     "KHR_materials_ior",
     "KHR_materials_transmission",
@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 13> kSupportedExtensions = {
     "KHR_materials_emissive_strength",
     "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",
+    "KHR_animation_pointer",  // read for journals alone
 };
 constexpr std::string_view kVisibilityExtension = "KHR_node_visibility";
 
@@ -79,7 +80,8 @@ void check_document(const Json& gltf, std::string_view file, std::vector<std::st
   check_lights(root);
   check_nodes(root);
   if (array_size(root, "skins") > 0) warnings.emplace_back("skins are ignored: meshes keep their unskinned shape");
-  if (array_size(root, "animations") > 0) warnings.emplace_back("animations are ignored");
+  if (array_size(root, "animations") > 0)
+    warnings.emplace_back("animations are ignored; relook journal animation makes journals of them");
 }
 
 }  // namespace relook

@@ -1,0 +1,219 @@
+#include "edit/draft_diff.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "edit/patch.h"
+#include "scene/look_names.h"
+
+namespace relook {
+namespace {
+
+const Json::json_pointer kGeometry("/extras/relook/geometry");
+
+bool equal(const Mesh& a, const Mesh& b) {
+  return a.primitive == b.primitive && a.positions == b.positions && a.triangles == b.triangles &&
+         a.normals == b.normals && a.tangents == b.tangents && a.uv == b.uv && a.colors == b.colors;
+}
+
+bool equal(const EncodedImage& a, const EncodedImage& b) {
+  return a.bytes == b.bytes || (a.bytes != nullptr && b.bytes != nullptr && *a.bytes == *b.bytes);
+}
+
+/// "Leaves" to "Leaves-0123abcd.png": letters and digits only, distinct for distinct bytes.
+std::string file_name_of(const std::string& image, const Bytes& bytes) {
+  std::string name;
+  for (const char c : image) {
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    name += is_plain ? c : '_';
+  }
+  constexpr std::size_t kHashDigits = 16, kLongest = 64;
+  const std::string_view text = text_of(bytes);
+  const char* extension = text.starts_with("\x89PNG") ? ".png" : text.starts_with("\xFF\xD8") ? ".jpg" : "";
+  return name.substr(0, kLongest) + "-" + hash128(bytes).substr(0, kHashDigits) + extension;
+}
+
+class Differ {
+ public:
+  Differ(const LookDocument& before, const LookDocument& after, const std::string& folder)
+      : before_(before), after_(after), folder_(folder) {}
+
+  DiffDraft run() {
+    for (const Section section : {Section::samplers, Section::images, Section::textures, Section::materials,
+                                  Section::lights, Section::meshes, Section::nodes})
+      diff_section(section);
+    diff({"scene"}, before_.look["scene"], after_.look["scene"]);
+    remove_rest();
+    warn();
+    result_.draft.steps.push_back({{"name", before_.file + " to " + after_.file}, {"edit", std::move(edit_)}});
+    return std::move(result_);
+  }
+
+ private:
+  void add_operation(const char* op, const Tokens& path) {
+    edit_.push_back({{"op", op}, {"path", pointer_text(path)}});
+  }
+  void add_operation(const char* op, const Tokens& path, Json value) {
+    add_operation(op, path);
+    edit_.back()["value"] = std::move(value);
+  }
+
+  static Tokens below(Tokens path, std::string token) {
+    path.push_back(std::move(token));
+    return path;
+  }
+
+  /// What turns `from` at `path` into `to`.
+  void diff(const Tokens& path, const Json& from, const Json& to) {
+    if (from == to) return;
+    const bool is_list = from.is_array() && to.is_array() && from.size() == to.size() && !to.empty() &&
+                         to[0].is_object() && from[0].is_object();
+    if (is_list)
+      for (std::size_t i = 0; i < to.size(); ++i) diff(below(path, std::to_string(i)), from[i], to[i]);
+    else if (from.is_object() && to.is_object())
+      diff_members(path, from, to);
+    else
+      add_operation("replace", path, to);
+  }
+
+  void diff_members(const Tokens& path, const Json& from, const Json& to) {
+    for (const auto& member : from.items())
+      if (!to.contains(member.key())) add_operation("remove", below(path, member.key()));
+    for (const auto& member : to.items()) {
+      if (from.contains(member.key()))
+        diff(below(path, member.key()), from[member.key()], member.value());
+      else
+        add_operation("add", below(path, member.key()), member.value());
+    }
+  }
+
+  void diff_section(Section section) {
+    const std::string name(section_name(section));
+    const Json& olds = before_.look[name];
+    for (const auto& item : after_.look[name].items()) {
+      const auto old = olds.find(item.key());
+      if (section == Section::images) {
+        diff_image(item.key());
+        continue;
+      }
+      Json from = old == olds.end() ? Json() : editable(section, *old);
+      Json to = editable(section, item.value());
+      if (section == Section::meshes && !name_geometry(item.key(), to)) continue;
+      if (section == Section::nodes) check_instances(item.key());
+      if (from.is_null())
+        add_operation("add", {name, item.key()}, std::move(to));
+      else if (from != to && is_another_kind(section, from, to))
+        add_operation("replace", {name, item.key()}, std::move(to));
+      else
+        diff({name, item.key()}, from, to);
+    }
+  }
+
+  /// An entity without what no journal edits.
+  static Json editable(Section section, Json value) {
+    if (section == Section::nodes) value.erase("camera");
+    if (section == Section::meshes && value.contains("primitives"))
+      for (Json& primitive : value["primitives"]) primitive.erase("extensions");
+    return value;
+  }
+
+  /// Members exclude each other: only a whole value says it.
+  static bool is_another_kind(Section section, const Json& from, const Json& to) {
+    if (section == Section::nodes) return from.contains("matrix") != to.contains("matrix");
+    return section == Section::lights && from["type"] != to["type"];
+  }
+
+  void diff_image(const std::string& name) {
+    const auto old = before_.assets->images.find(name);
+    const EncodedImage& image = after_.assets->images.at(name);
+    const bool is_known = before_.look["images"].contains(name) && old != before_.assets->images.end();
+    if (is_known && equal(old->second, image)) return;
+    if (image.bytes == nullptr) {
+      if (!is_known) return add_operation("add", {"images", name}, Json::object());
+      throw InputError(after_.file, "", "image \"" + name + "\" has no content any more, which no journal can say");
+    }
+    const std::string file = folder_ + "/" + file_name_of(name, *image.bytes);
+    result_.files.push_back({file, image.bytes});
+    add_operation("add", {"images", name}, {{"uri", file}});
+  }
+
+  /// Puts the name of the geometry in `before_` into a mesh of `after_`. False: unknown, and shown by no node.
+  bool name_geometry(const std::string& mesh, Json& value) {
+    const auto& known = before_.assets->mesh_primitives;
+    const std::vector<MeshId>& wanted = after_.assets->mesh_primitives.at(value[kGeometry].get<std::string>());
+    const auto fits = [&](const std::vector<MeshId>& ids) {
+      return std::equal(ids.begin(), ids.end(), wanted.begin(), wanted.end(), [&](MeshId a, MeshId b) {
+        return equal(before_.assets->meshes[a.index()], after_.assets->meshes[b.index()]);
+      });
+    };
+    auto found = known.find(mesh);
+    if (found == known.end() || !fits(found->second))
+      found = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return fits(entry.second); });
+    if (found != known.end()) {
+      value[kGeometry] = found->first;
+      return true;
+    }
+    for (const Json& node : after_.look["nodes"])
+      if (node.value("mesh", Json()) == mesh)
+        throw InputError(after_.file, "",
+                         "mesh \"" + mesh + "\" has geometry that is not in " + before_.file +
+                             ", which no journal can say: a journal can only add whole files, as {\"asset\": FILE}");
+    result_.draft.warnings.push_back("mesh \"" + mesh + "\" is left out: no node shows it");
+    return false;
+  }
+
+  void check_instances(const std::string& node) const {
+    const auto now = after_.instances.find(node), then = before_.instances.find(node);
+    if (now == after_.instances.end() || !after_.look["nodes"][node].contains("mesh")) return;
+    if (then == before_.instances.end() || then->second != now->second)
+      throw InputError(after_.file, "", "the instances of node \"" + node + "\" differ, which no journal can say");
+  }
+
+  /// What only `before_` has. A node loses its children first, which may be elsewhere now.
+  void remove_rest() {
+    const Json &olds = before_.look["nodes"], &news = after_.look["nodes"];
+    for (const auto& node : olds.items())
+      if (!news.contains(node.key()) && !node.value()["children"].empty())
+        add_operation("replace", {"nodes", node.key(), "children"}, Json::array());
+    for (const Section section : {Section::nodes, Section::meshes, Section::lights, Section::materials,
+                                  Section::textures, Section::images, Section::samplers}) {
+      const std::string name(section_name(section));
+      for (const auto& item : before_.look[name].items())
+        if (!after_.look[name].contains(item.key())) add_operation("remove", {name, item.key()});
+    }
+  }
+
+  void warn() {
+    std::vector<std::string>& warnings = result_.draft.warnings;
+    const auto cameras = [](Json all) {
+      for (Json& camera : all) camera.erase("index");
+      return all;
+    };
+    if (cameras(before_.cameras) != cameras(after_.cameras))
+      warnings.emplace_back("the cameras differ: a journal keeps the one of its cache");
+    const auto variants = [](const LookDocument& document) {
+      std::vector<Json> found{document.look.value("extensions", Json())};
+      for (const Json& mesh : document.look["meshes"])
+        for (const Json& primitive : mesh.value("primitives", Json::array()))
+          found.push_back(primitive.value("extensions", Json()));
+      return found;
+    };
+    if (variants(before_) != variants(after_))
+      warnings.emplace_back("the material variants differ: a journal changes materials only, see journal variants");
+    if (edit_.empty()) warnings.emplace_back("nothing differs that a journal edits");
+  }
+
+  const LookDocument &before_, &after_;
+  std::string folder_;
+  Json edit_ = Json::array();
+  DiffDraft result_;
+};
+
+}  // namespace
+
+DiffDraft draft_diff(const LookDocument& before, const LookDocument& after, const std::string& folder) {
+  return Differ(before, after, folder).run();
+}
+
+}  // namespace relook
