@@ -210,6 +210,9 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   CLI::App& tune = *app.add_subcommand("tune", "Say what each eviction policy and budget would have cost a replay");
   add_inputs(tune, arguments, "ACCESS_LOG", "What replay --access-log wrote", 1, 1);
   add_journal(app, arguments, raw);
+
+  CLI::App& blame = *app.add_subcommand("blame", "Say which steps of a run changed a pixel, and through what");
+  add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 
   CLI::App& completions = *app.add_subcommand("completions", "Print completions for a shell");
@@ -219,8 +222,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
 }
 
-constexpr std::array<std::string_view, 9> kVerbs{"render", "preprocess", "replay",  "compare",    "inspect",
-                                                 "check",  "tune",       "journal", "completions"};
+constexpr std::array<std::string_view, 10> kVerbs{"render", "preprocess", "replay",  "compare", "inspect",
+                                                  "check",  "tune",       "journal", "blame",   "completions"};
 constexpr std::array<std::string_view, 5> kProgressStyles{"auto", "plain", "json", "openjd", "none"};
 
 /// The place of `word` among `choices`. Throws UsageError with the nearest one.

@@ -13,7 +13,18 @@
 
 namespace relook {
 
-enum class Verb : std::uint8_t { render, preprocess, replay, compare, inspect, check, tune, journal, completions };
+enum class Verb : std::uint8_t {
+  render,
+  preprocess,
+  replay,
+  compare,
+  inspect,
+  check,
+  tune,
+  journal,
+  blame,
+  completions
+};
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };
 enum class JournalSource : std::uint8_t { diff, variants, animation, wedge };
 

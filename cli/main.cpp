@@ -27,6 +27,8 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
       return run_check(arguments, console);
     case Verb::tune:
       return run_tune(arguments, console);
+    case Verb::blame:
+      return run_blame(arguments, console);
     case Verb::journal:
       return run_journal(arguments, console);
     case Verb::completions:

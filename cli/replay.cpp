@@ -145,6 +145,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
                 residency_options(arguments, folder)) {
   report_.scene = replayer_.state().document().file;
   report_.scene_hash = cache.scene_hash;
+  report_.cache_folder = arguments.inputs[0];
   report_.journal = journal.file;
   report_.journal_hash = journal.hash;
   report_.camera = replayer_.state().scene().camera;

@@ -54,6 +54,16 @@ std::pair<std::uint32_t, std::uint32_t> parse_resolution(std::string_view option
   refuse(option, text, "a resolution like 1280x720, up to 16384x16384");
 }
 
+std::pair<std::uint32_t, std::uint32_t> parse_pixel(std::string_view option, std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma != std::string_view::npos) {
+    const auto x = whole_number<std::uint32_t>(text.substr(0, comma));
+    const auto y = whole_number<std::uint32_t>(text.substr(comma + 1));
+    if (x && y) return {*x, *y};
+  }
+  refuse(option, text, "a pixel like 120,45");
+}
+
 double parse_percent(std::string_view option, std::string_view text, bool zero_allowed) {
   std::string_view number = text;
   if (number.ends_with('%')) number.remove_suffix(1);

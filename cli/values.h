@@ -13,6 +13,8 @@ namespace relook {
 [[nodiscard]] std::uint64_t parse_size(std::string_view option, std::string_view text);
 /// "1280x720": 1..16384 each.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_resolution(std::string_view option, std::string_view text);
+/// "120,45": a pixel, column and row.
+[[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_pixel(std::string_view option, std::string_view text);
 /// "50" or "50%": low < value <= 100 or, with `zero`, low <= value.
 [[nodiscard]] double parse_percent(std::string_view option, std::string_view text, bool zero_allowed);
 

@@ -178,6 +178,7 @@ Json report_json(const RunReport& report) {
           {"version", kReportVersion},
           {"program", program_version()},
           {"scene", {{"file", report.scene}, {"hash", report.scene_hash}}},
+          {"cache", report.cache_folder},
           {"journal", {{"file", report.journal}, {"hash", report.journal_hash}}},
           {"camera", report.camera.name},
           {"resolution", {report.camera.width, report.camera.height}},

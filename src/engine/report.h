@@ -67,6 +67,7 @@ struct CacheSizes {
 
 struct RunReport {
   std::string scene, scene_hash;      // file as named when the cache was made
+  std::string cache_folder;           // as named by the user
   std::string journal, journal_hash;  // file as named by the user
   Camera camera;
   ViewOptions view;

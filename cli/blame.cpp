@@ -1,0 +1,148 @@
+// `relook blame`: which steps of a run changed a pixel, through which objects and lights.
+#include <cstring>
+#include <filesystem>
+#include <span>
+
+#include "edit/journal.h"
+#include "engine/cached_image.h"
+#include "engine/pixel_history.h"
+#include "load_cache.h"
+#include "values.h"
+#include "verbs.h"
+
+namespace relook {
+namespace {
+
+/// What a run was made from.
+struct RunSource {
+  std::string scene_hash;
+  Journal journal;
+  std::size_t steps = 0;  // of the journal that the run has done
+  std::string cache;
+};
+
+RunSource read_run(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / "report.json";
+  const std::string file = path.string();
+  const Bytes bytes = read_file(path);
+  const Json report = parse_json(text_of(bytes), file);
+  const JsonView view(report, file);
+  if (view.at("relook").text() != "report/1") view.at("relook").fail("not a report that this program reads");
+  RunSource source;
+  source.scene_hash = view.at("scene").at("hash").text();
+  source.cache = view.at("cache").text();
+  source.journal = read_journal(view.at("journal").at("file").text());
+  if (source.journal.hash != view.at("journal").at("hash").text())
+    throw InputError(source.journal.file, "", "is not as it was when " + run.string() + " was made");
+  const JsonView steps = view.at("steps");
+  steps.require_array();
+  if (steps.size() > 0)
+    source.steps = static_cast<std::size_t>(
+        steps.at(steps.size() - 1).at("step").integer(0, static_cast<std::int64_t>(source.journal.steps.size())));
+  return source;
+}
+
+Json color_json(const Rgba& color) { return {color.r, color.g, color.b, color.a}; }
+
+std::string text(const Rgba& color) {
+  char text[128];
+  std::snprintf(text, sizeof text, "(%.6g, %.6g, %.6g, %.6g)", static_cast<double>(color.r),
+                static_cast<double>(color.g), static_cast<double>(color.b), static_cast<double>(color.a));
+  return text;
+}
+
+void print_paths(const std::vector<std::string>& paths, Console& console) {
+  for (const std::string& line : paths) console.line("    " + printable(line));
+}
+
+/// A cache's image as it was rendered, with the pixel's history from there.
+std::unique_ptr<PixelHistory> open_pixel(const RunSource& source, std::uint32_t x, std::uint32_t y) {
+  CacheContent content = load_mended_cache(source.cache).content;
+  if (content.scene_hash != source.scene_hash) require_sound({CacheFault::other_scene, "", ""}, source.cache);
+  if (x >= content.camera.width || y >= content.camera.height)
+    throw UsageError("PIXEL: the image is " + std::to_string(content.camera.width) + "x" +
+                     std::to_string(content.camera.height) + " pixels");
+  RestoredImage restored;
+  require_sound(restore_image(std::move(content), restored), source.cache);
+  const Frame& frame = restored.image.frame;
+  auto history = std::make_unique<PixelHistory>(std::move(*restored.state), restored.image.view, x, y);
+  const Rgba color = history->color();
+  require(std::memcmp(&color, &frame.pixels[std::size_t{y} * frame.width + x], sizeof color) == 0,
+          "a pixel is traced as it stands in the cache");
+  return history;
+}
+
+class Blame {
+ public:
+  Blame(PixelHistory& pixel, Console& console) : pixel_(pixel), console_(console), paths_(pixel.paths()) {
+    console_.line("before any step: " + text(pixel.color()));
+    print_paths(paths_, console_);
+  }
+
+  void run(const Journal& journal, std::size_t steps) {
+    for (std::size_t i = 0; i < steps; ++i) {
+      const JournalStep& step = journal.steps[i];
+      const bool has_frames = !step.drag.empty() || !step.wedge.empty();
+      std::uint32_t number = 0;
+      for (const Edit& edit : frames_of(step)) {
+        console_.check_interrupt();
+        ++number;
+        const PixelStep result = pixel_.step(edit, journal.file, journal.path.parent_path());
+        if (result.is_changed)
+          note(static_cast<std::uint32_t>(i + 1), has_frames ? std::optional(number) : std::nullopt, step, result);
+      }
+    }
+  }
+  [[nodiscard]] Json found() { return std::move(found_); }
+
+ private:
+  void note(std::uint32_t number, std::optional<std::uint32_t> frame, const JournalStep& step,
+            const PixelStep& result) {
+    const std::string change(change_class_name(result.classification.change));
+    console_.line(step_label(number, frame) + " " + change + " \"" + printable(step.name) +
+                  "\": " + text(result.before) + " -> " + text(result.after));
+    Json causes = Json::array();
+    for (const std::string& cause : result.causes) {
+      causes.push_back(printable(cause));
+      console_.line("  " + printable(cause));
+    }
+    if (pixel_.paths() != paths_) print_paths(pixel_.paths(), console_);
+    paths_ = pixel_.paths();
+    Json entry{{"step", number},
+               {"name", step.name},
+               {"class", change},
+               {"frame", frame_name(number, frame)},
+               {"before", color_json(result.before)},
+               {"after", color_json(result.after)},
+               {"causes", causes},
+               {"paths", paths_}};
+    found_.push_back(std::move(entry));
+  }
+
+  PixelHistory& pixel_;
+  Console& console_;
+  std::vector<std::string> paths_;
+  Json found_ = Json::array();
+};
+
+}  // namespace
+
+ExitCode run_blame(const Arguments& arguments, Console& console) {
+  const auto [x, y] = parse_pixel("PIXEL", arguments.inputs[1]);
+  const RunSource source = read_run(arguments.inputs[0]);
+  const std::unique_ptr<PixelHistory> pixel = open_pixel(source, x, y);
+  const Rgba color = pixel->color();
+  const std::vector<std::string> paths = pixel->paths();
+  Blame blame(*pixel, console);
+  blame.run(source.journal, source.steps);
+  const Json found = blame.found();
+  console.line(std::to_string(found.size()) + " frames changed pixel " + arguments.inputs[1]);
+  console.json({{"run", arguments.inputs[0]},
+                {"pixel", {x, y}},
+                {"base", color_json(color)},
+                {"paths", paths},
+                {"changes", found}});
+  return ExitCode::ok;
+}
+
+}  // namespace relook
