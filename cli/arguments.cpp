@@ -211,6 +211,10 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_inputs(tune, arguments, "ACCESS_LOG", "What replay --access-log wrote", 1, 1);
   add_journal(app, arguments, raw);
 
+  CLI::App& plan = *app.add_subcommand("plan", "Say what each step of a replay will cost, without replaying");
+  add_inputs(plan, arguments, "CACHE JOURNAL", "Cache folder and journal", 2, 2);
+  add_output(plan, arguments, "JSON file to write");
+
   CLI::App& blame = *app.add_subcommand("blame", "Say which steps of a run changed a pixel, and through what");
   add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
@@ -222,8 +226,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
 }
 
-constexpr std::array<std::string_view, 10> kVerbs{"render", "preprocess", "replay",  "compare", "inspect",
-                                                  "check",  "tune",       "journal", "blame",   "completions"};
+constexpr std::array<std::string_view, 11> kVerbs{"render", "preprocess", "replay", "compare", "inspect",    "check",
+                                                  "tune",   "journal",    "blame",  "plan",    "completions"};
 constexpr std::array<std::string_view, 5> kProgressStyles{"auto", "plain", "json", "openjd", "none"};
 
 /// The place of `word` among `choices`. Throws UsageError with the nearest one.

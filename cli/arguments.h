@@ -23,6 +23,7 @@ enum class Verb : std::uint8_t {
   tune,
   journal,
   blame,
+  plan,
   completions
 };
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };

@@ -29,6 +29,8 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
       return run_tune(arguments, console);
     case Verb::blame:
       return run_blame(arguments, console);
+    case Verb::plan:
+      return run_plan(arguments, console);
     case Verb::journal:
       return run_journal(arguments, console);
     case Verb::completions:

@@ -14,6 +14,7 @@ namespace relook {
 [[nodiscard]] ExitCode run_check(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_tune(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_blame(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_plan(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_journal(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_completions(const Arguments& arguments, Console& console);
 

@@ -54,7 +54,7 @@ class Cli : public testing::Test {
 
 TEST_F(Cli, usage_errors_are_one_line_and_exit_1) {
   expect_error(relook({}), 1, "a verb is required");
-  expect_error(relook({"plan"}), 1, "no verb \"plan\"");
+  expect_error(relook({"pln"}), 1, "no verb \"pln\"");
   expect_error(relook({"rendr", kScene}), 1, "did you mean \"render\"?");
   expect_error(relook({"render"}), 1, "SCENE");
   expect_error(relook({"render", kScene}), 1, "--output");

@@ -1,0 +1,78 @@
+// `relook plan`: the class, samples, seconds and bytes of each frame that a replay will have, without replaying it.
+#include "engine/plan.h"
+
+#include <cstdio>
+
+#include "edit/apply.h"
+#include "load_cache.h"
+#include "verbs.h"
+
+namespace relook {
+namespace {
+
+Json frame_json(const PlannedFrame& frame) {
+  return {{"step", frame.step},
+          {"name", frame.name},
+          {"frame", frame_name(frame.step, frame.frame_in_step)},
+          {"class", change_class_name(frame.classification.change)},
+          {"reasons", frame.classification.reasons},
+          {"samples_affected", frame.samples_affected},
+          {"pixels_changed", frame.pixels_changed},
+          {"seconds", frame.seconds},
+          {"resident_bytes", frame.resident_bytes}};
+}
+
+void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
+  char numbers[128];
+  std::snprintf(numbers, sizeof numbers, ": %llu samples (%.2f %%), %llu pixels, %.4f s, %.1f M",
+                static_cast<unsigned long long>(frame.samples_affected),
+                100 * static_cast<double>(frame.samples_affected) / static_cast<double>(samples),
+                static_cast<unsigned long long>(frame.pixels_changed), frame.seconds,
+                static_cast<double>(frame.resident_bytes) / (1 << 20));
+  console.line(step_label(frame.step, frame.frame_in_step) + " " +
+               std::string(change_class_name(frame.classification.change)) + " \"" + printable(frame.name) + "\"" +
+               numbers);
+}
+
+}  // namespace
+
+ExitCode run_plan(const Arguments& arguments, Console& console) {
+  const std::string& cache = arguments.inputs[0];
+  const Journal journal = read_journal(arguments.inputs[1]);
+  const CacheContent content = load_mended_cache(cache).content;
+  const ViewOptions view{content.samples, content.max_depth, content.shadow_bits};
+  {
+    LookDocument document = content.document;
+    document.assets = std::make_shared<Assets>(*document.assets);
+    SceneState state(std::move(document), content.camera, content.pyramids);
+    check_journal(state, journal);
+  }
+  const Plan plan =
+      plan_replay(content.document, content.camera, content.pyramids, view, journal, console.stage("planning"));
+  console.end_stage();
+  Json frames = Json::array();
+  double seconds = 0;
+  std::uint64_t most_bytes = 0;
+  for (const PlannedFrame& frame : plan.frames) {
+    print(frame, plan.samples_total, console);
+    frames.push_back(frame_json(frame));
+    seconds += frame.seconds;
+    most_bytes = std::max(most_bytes, frame.resident_bytes);
+  }
+  const Json result{{"cache", cache},
+                    {"journal", journal.file},
+                    {"samples_total", plan.samples_total},
+                    {"proxy", {plan.proxy_width, plan.proxy_height}},
+                    {"seconds", seconds},
+                    {"most_resident_bytes", most_bytes},
+                    {"frames", std::move(frames)}};
+  char total[96];
+  std::snprintf(total, sizeof total, "%zu frames: %.3f s without writing, at most %.1f M resident", plan.frames.size(),
+                seconds, static_cast<double>(most_bytes) / (1 << 20));
+  console.line(total);
+  if (!arguments.output.empty()) write_file(arguments.output, result.dump(2) + "\n");
+  console.json(result);
+  return ExitCode::ok;
+}
+
+}  // namespace relook
