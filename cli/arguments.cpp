@@ -36,15 +36,15 @@ constexpr std::string_view kExamples =
 /// Options that need our own syntax, as text until the whole line is read.
 struct RawTexts {
   std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
-  std::string compare_json;  // "-": to stdout
+  std::string json;  // compare, plan; "-": to stdout
   std::optional<std::string> steps;
 };
 
 void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--threads", arguments.threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
   verb.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  if (verb.get_name() == "compare")
-    verb.add_flag("--json{-}", raw.compare_json, "Print results as one JSON object; =FILE writes it there");
+  if (verb.get_name() == "compare" || verb.get_name() == "plan")
+    verb.add_flag("--json{-}", raw.json, "Print results as one JSON object; =FILE writes it there");
   else
     verb.add_flag("--json", arguments.json, "Print results as one JSON object");
   verb.add_option("--progress", raw.progress, "auto, plain, json, openjd or none")
@@ -212,8 +212,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_journal(app, arguments, raw);
 
   CLI::App& plan = *app.add_subcommand("plan", "Say what each step of a replay will cost, without replaying");
-  add_inputs(plan, arguments, "CACHE JOURNAL", "Cache folder and journal", 2, 2);
-  add_output(plan, arguments, "JSON file to write");
+  add_inputs(plan, arguments, "CACHE JOURNAL", "Cache folder and journal", 2, 3);
 
   CLI::App& blame = *app.add_subcommand("blame", "Say which steps of a run changed a pixel, and through what");
   add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);
@@ -267,10 +266,19 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return choices;
 }
 
+/// "plan CACHE JOURNAL --json FILE", too: the third word.
+void resolve_plan(const RawTexts& raw, Arguments& arguments) {
+  const bool has_file = arguments.inputs.size() > 2;
+  if (has_file && raw.json != "-") throw UsageError("CACHE JOURNAL: " + arguments.inputs[2] + " is one too many");
+  if (has_file) arguments.json_file = arguments.inputs[2];
+  arguments.json = raw.json == "-" && !has_file;
+  if (!raw.json.empty() && raw.json != "-") arguments.json_file = raw.json;
+}
+
 /// "--json FILE.json", too: the word after --json, which is neither a frame nor a folder.
 void take_json_file(const RawTexts& raw, Arguments& arguments) {
-  if (raw.compare_json.empty()) return;
-  arguments.json_file = raw.compare_json == "-" ? "" : raw.compare_json;
+  if (raw.json.empty()) return;
+  arguments.json_file = raw.json == "-" ? "" : raw.json;
   if (!arguments.json_file.empty()) return;
   const auto is_json = [](const std::string& input) { return std::filesystem::path(input).extension() == ".json"; };
   const auto found = std::ranges::find_if(arguments.inputs, is_json);
@@ -373,6 +381,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   }
   resolve(raw, arguments);
   if (arguments.verb == Verb::compare) resolve_compare(raw, arguments);
+  if (arguments.verb == Verb::plan) resolve_plan(raw, arguments);
   if (arguments.verb == Verb::inspect) resolve_inspect(*app.get_subcommands().front(), arguments);
   return {std::move(arguments), ""};
 }

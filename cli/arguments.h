@@ -67,7 +67,7 @@ struct Arguments {
 
   Thresholds thresholds;                               // compare
   bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP
-  std::string json_file;                               // compare: --json=FILE, or ""
+  std::string json_file;                               // compare, plan: --json=FILE, or ""
   std::string html;                                    // compare: file, or ""
   JournalSource journal_source = JournalSource::diff;  // journal; the rest: of an animation
   SampleTimes sample_times;

@@ -42,7 +42,7 @@ void expect_good_plan(const PlanCase& plan, const ScratchFolder& folder) {
   preprocess.insert(preprocess.end(), plan.view.begin(), plan.view.end());
   ASSERT_EQ(relook(preprocess).exit_code, 0);
   const std::string out = (folder / "plan.json").string();
-  const ProgramResult planned = relook({"plan", cache, plan.journal.string(), "-o", out, "--quiet"});
+  const ProgramResult planned = relook({"plan", cache, plan.journal.string(), "--json", out, "--quiet"});
   ASSERT_EQ(planned.exit_code, 0) << planned.output;
   ASSERT_EQ(relook({"replay", cache, plan.journal.string(), "-o", run, "--quiet"}).exit_code, 0);
   const Json frames = read_json(out)["frames"], steps = read_json(std::filesystem::path(run) / "report.json")["steps"];
@@ -107,7 +107,7 @@ TEST(Plan, a_wrong_journal_is_refused_before_anything_is_planned) {
             0);
   std::ofstream(journal) << R"({"relook": "journal/1", "steps": [{"edit": [
     {"op": "replace", "path": "/materials/Pant/doubleSided", "value": true}]}]})";
-  const ProgramResult result = relook({"plan", cache, journal, "-o", (folder / "plan.json").string()});
+  const ProgramResult result = relook({"plan", cache, journal, "--json=" + (folder / "plan.json").string()});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_NE(result.output.find("did you mean \"Paint\"?"), std::string::npos) << result.output;
   EXPECT_FALSE(std::filesystem::exists(folder / "plan.json"));
