@@ -83,6 +83,7 @@ struct TileCompressor::Impl {
         libdeflate_zlib_compress(compressor_.get(), data.data(), data.size(), packed.data(), packed.size());
     require(packed_size > 0, "deflate into a buffer of its own bound succeeds");
     packed.resize(packed_size);
+    packed.shrink_to_fit();  // tiles of many layers are kept until the last is there
     return packed;
   }
 
