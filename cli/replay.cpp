@@ -171,10 +171,10 @@ std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
     run_steps();
   } catch (const Interrupted&) {
     report_.interrupted = true;
-    folder_.write_report(report_);
+    folder_.write_report(report_, journal_);
     throw;
   }
-  folder_.write_report(report_);
+  folder_.write_report(report_, journal_);
   if (!arguments_.access_log.empty()) write_file(arguments_.access_log, replayer_.residency().access_log());
   return pixels_different_;
 }

@@ -10,13 +10,14 @@
 #include "base/hash.h"
 #include "engine/layered_frame.h"
 #include "engine/overlay.h"
+#include "page/run_page.h"
 
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 3> kFrameFolders{"frames", "previews", "overlays"};
-constexpr std::array<std::string_view, 6> kRunEntries{"report.json", "report.html", "frames",
-                                                      "previews",    "overlays",    kProgressName};
+constexpr std::array<std::string_view, 4> kFrameFolders{"frames", "previews", "overlays", "pixels"};
+constexpr std::array<std::string_view, 7> kRunEntries{"report.json", "report.html", "frames",     "previews",
+                                                      "overlays",    "pixels",      kProgressName};
 
 void remove_entry(const std::filesystem::path& path) {
   std::error_code error;
@@ -193,12 +194,14 @@ void RunFolder::append_note(const std::optional<Json>& note) {
   if (note) progress_.append(*note);
 }
 
-void RunFolder::write_report(RunReport& report) {
+void RunFolder::write_report(RunReport& report, const Journal& journal) {
   finish_writing();
   require(frame_hashes_.size() == report.steps.size(), "each step of a report has written its frame");
   for (std::size_t i = 0; i < report.steps.size(); ++i) report.steps[i].frame_hash = frame_hashes_[i];
   append_note(std::exchange(finished_, std::nullopt));
-  write_file(path_ / "report.json", report_json(report).dump(2) + "\n");
+  const Json json = report_json(report);
+  write_run_page(path_, json, journal);
+  write_file(path_ / "report.json", json.dump(2) + "\n");
   if (!report.interrupted) progress_.remove();
 }
 

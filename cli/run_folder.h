@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "edit/journal.h"
 #include "engine/frame_file.h"
 #include "engine/preview.h"
 #include "engine/replay.h"
@@ -42,8 +43,8 @@ class RunFolder {
   void write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result);
   /// After write_step() and write_overlays(), with all that is known of the step: a later run may take it over.
   void note_step(const StepReport& step);
-  /// Sets the frame hashes of the steps and writes report.json.
-  void write_report(RunReport& report);
+  /// Sets the frame hashes of the steps and writes report.html, then report.json.
+  void write_report(RunReport& report, const Journal& journal);
 
  private:
   void keep_finished_steps(const std::string& run);

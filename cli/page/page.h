@@ -1,0 +1,34 @@
+// A web page of one file that works from disk, offline: scripts and styles are built into the program and stand in the
+// page, admitted by their hashes (Content-Security-Policy); data stands in it as JSON, which nothing executes. Whatever
+// comes from scenes and journals is data, and scripts show it as text only.
+#pragma once
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/files.h"
+#include "base/json.h"
+
+namespace relook {
+
+struct Page {
+  std::string title;                               // any text
+  std::vector<std::string_view> styles, scripts;   // names of assets in this folder, in their order in the page
+  std::string_view body;                           // name of an asset: HTML that holds no data
+  std::vector<std::pair<std::string, Json>> data;  // by the id of the element that holds it
+  bool has_files_beside = false;                   // scripts may load data scripts from beside the page
+};
+
+[[nodiscard]] std::string page_text(const Page& page);
+
+/// Text as HTML shows it, in elements and in quoted attributes.
+[[nodiscard]] std::string escaped_html(std::string_view text);
+/// JSON that may stand in a script element: no "<", no ">", no "&".
+[[nodiscard]] std::string script_json(const Json& value);
+
+[[nodiscard]] std::string base64(BytesView bytes);
+/// "data:image/png;base64,..."
+[[nodiscard]] std::string png_url(BytesView png);
+
+}  // namespace relook

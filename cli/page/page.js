@@ -1,0 +1,73 @@
+"use strict";
+// Data and elements. Whatever comes from data becomes text nodes: nothing is ever parsed as HTML.
+
+const page = {
+  data(id) {
+    return JSON.parse(document.getElementById(id).textContent);
+  },
+
+  byId(id) {
+    return document.getElementById(id);
+  },
+
+  /** An element with properties ("data-x" and "aria-x": attributes) and children (elements, or texts). */
+  element(tag, properties = {}, ...children) {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(properties)) {
+      if (name.includes("-") || name === "role") element.setAttribute(name, value);
+      else element[name] = value;
+    }
+    element.append(...children.map((child) => (child instanceof Node ? child : String(child))));
+    return element;
+  },
+
+  /** A table of two columns, names and values; numbers to the right. */
+  table(rows) {
+    const body = page.element("tbody");
+    for (const [name, value] of rows) {
+      const cell = page.element("td", { className: "number" }, value);
+      body.append(page.element("tr", {}, page.element("th", { scope: "row" }, name), cell));
+    }
+    return page.element("table", {}, body);
+  },
+
+  count(value) {
+    return Number(value).toLocaleString("en-US");
+  },
+
+  seconds(value) {
+    if (value >= 1) return `${value.toFixed(2)} s`;
+    return value >= 0.001 ? `${(value * 1e3).toPrecision(3)} ms` : `${(value * 1e6).toFixed(0)} µs`;
+  },
+
+  bytes(value) {
+    const units = ["B", "kB", "MB", "GB", "TB"];
+    let unit = 0;
+    while (value >= 1000 && unit + 1 < units.length) {
+      value /= 1000;
+      ++unit;
+    }
+    return `${unit === 0 ? value : value.toPrecision(3)} ${units[unit]}`;
+  },
+
+  /** "light" or "dark"; as the system has it until it is chosen. */
+  scheme() {
+    return document.documentElement.dataset.scheme;
+  },
+
+  setScheme(scheme) {
+    document.documentElement.dataset.scheme = scheme;
+    document.dispatchEvent(new Event("scheme"));
+  },
+
+  followSystemScheme() {
+    const query = matchMedia("(prefers-color-scheme: dark)");
+    page.setScheme(query.matches ? "dark" : "light");
+    query.addEventListener("change", () => page.setScheme(query.matches ? "dark" : "light"));
+  },
+
+  /** The value of a custom property of page.css. */
+  color(name) {
+    return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+  },
+};

@@ -1,0 +1,207 @@
+"use strict";
+// The linear pixels of a run's frames, bit by bit those of its EXR files: tiles as OpenEXR packs them, each stored with
+// the first frame that has it. They stand in the page, or in pixels/*.js beside it.
+
+/** Values of all half floats, by their bits. */
+const halfValues = (() => {
+  const values = new Float32Array(65536);
+  for (let bits = 0; bits < 65536; ++bits) {
+    const exponent = (bits >> 10) & 31, fraction = bits & 1023;
+    let value = fraction * 2 ** -24;
+    if (exponent === 31) value = fraction ? NaN : Infinity;
+    else if (exponent > 0) value = (1024 + fraction) * 2 ** (exponent - 25);
+    values[bits] = bits & 0x8000 ? -value : value;
+  }
+  return values;
+})();
+
+/** One frame: for each of R, G, B and A the bits of its values, [height * width]. */
+class FrameBuffer {
+  constructor(layout) {
+    this.width = layout.width;
+    this.height = layout.height;
+    this.columns = Math.ceil(layout.width / layout.tile);
+    this.tileCount = this.columns * Math.ceil(layout.height / layout.tile);
+    this.sources = new Int32Array(this.tileCount).fill(-1);  // the entry that each tile is from
+    this.planes = {};
+    for (const { name, bytes } of layout.channels)
+      if ("RGBA".includes(name))
+        this.planes[name] = new (bytes === 2 ? Uint16Array : Uint32Array)(layout.width * layout.height);
+  }
+
+  /** The value of a channel at a pixel, as the file has it. */
+  value(name, x, y) {
+    const plane = this.planes[name];
+    if (!plane) return name === "A" ? 1 : 0;
+    if (plane instanceof Uint16Array) return halfValues[plane[y * this.width + x]];
+    return new Float32Array(plane.buffer)[y * this.width + x];
+  }
+}
+
+class RunFrames {
+  /** `embedded`: base64 by entry, or null when it is beside the page. */
+  constructor(layout, embedded) {
+    this.layout = layout;
+    this.embedded = embedded;
+    this.packedBytes = new Map();  // by entry, the latest used last
+    this.waiting = new Map();
+    this.positions = layout.entries.map(({ tiles, sizes }) => {
+      const positions = new Map();
+      let offset = 0;
+      tiles.forEach((tile, i) => {
+        positions.set(tile, [offset, sizes[i]]);
+        offset += sizes[i];
+      });
+      return positions;
+    });
+    const tileCount = Math.ceil(layout.width / layout.tile) * Math.ceil(layout.height / layout.tile);
+    let last = new Int32Array(tileCount);
+    this.sources = layout.entries.map(({ tiles }, entry) => {
+      last = last.slice();
+      for (const tile of tiles) last[tile] = entry;
+      return last;
+    });
+  }
+
+  /** Makes `buffer` the frame of an entry: takes the tiles that it does not have yet. */
+  async fill(buffer, entry) {
+    const wanted = this.sources[entry], tiles = [];
+    for (let tile = 0; tile < wanted.length; ++tile)
+      if (buffer.sources[tile] !== wanted[tile]) tiles.push(tile);
+    await Promise.all(tiles.map(async (tile) => {
+      const raw = await this.rawTile(tile, wanted[tile]);
+      this.place(buffer, tile, raw);
+      buffer.sources[tile] = wanted[tile];
+    }));
+  }
+
+  rect(tile) {
+    const { width, height, tile: side } = this.layout, columns = Math.ceil(width / side);
+    const x = (tile % columns) * side, y = Math.floor(tile / columns) * side;
+    return { x, y, width: Math.min(side, width - x), height: Math.min(side, height - y) };
+  }
+
+  place(buffer, tile, raw) {
+    const { x, y, width, height } = this.rect(tile);
+    let offset = 0;
+    for (let row = 0; row < height; ++row) {
+      for (const { name, bytes } of this.layout.channels) {
+        const plane = buffer.planes[name];
+        if (plane) {
+          const values = new plane.constructor(raw.buffer.slice(offset, offset + width * bytes));
+          plane.set(values, (y + row) * this.layout.width + x);
+        }
+        offset += width * bytes;
+      }
+    }
+  }
+
+  /** OpenEXR's ZIP undone: inflate, sums, bytes put back in turn. */
+  async rawTile(tile, entry) {
+    const [offset, size] = this.positions[entry].get(tile), { width, height } = this.rect(tile);
+    const packed = (await this.packed(entry)).subarray(offset, offset + size);
+    const rawSize = width * height * this.layout.channels.reduce((sum, { bytes }) => sum + bytes, 0);
+    if (size === rawSize) return packed.slice();
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const split = new Uint8Array(await new Response(stream).arrayBuffer());
+    const raw = new Uint8Array(rawSize), evenSize = (rawSize + 1) >> 1;
+    let sum = split[0];
+    raw[0] = sum;
+    for (let i = 1; i < rawSize; ++i) {
+      sum = (sum + split[i] - 128) & 255;
+      raw[i < evenSize ? 2 * i : 2 * (i - evenSize) + 1] = sum;
+    }
+    return raw;
+  }
+
+  async packed(entry) {
+    let bytes = this.packedBytes.get(entry);
+    if (!bytes) {
+      if (!this.waiting.has(entry)) this.waiting.set(entry, this.load(entry));
+      bytes = await this.waiting.get(entry);
+      this.waiting.delete(entry);
+    }
+    this.packedBytes.delete(entry);
+    this.packedBytes.set(entry, bytes);
+    let total = 0;
+    for (const kept of this.packedBytes.values()) total += kept.length;
+    for (const [key, kept] of this.packedBytes) {
+      if (total < RunFrames.mostBytes || key === entry) break;
+      total -= kept.length;
+      this.packedBytes.delete(key);
+    }
+    return bytes;
+  }
+
+  async load(entry) {
+    const text = this.embedded ? this.embedded[entry] : await RunFrames.textBeside(entry);
+    const binary = atob(text), bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+    return bytes;
+  }
+
+  static textBeside(entry) {
+    return new Promise((resolve, reject) => {
+      RunFrames.expected.set(entry, resolve);
+      const script = document.createElement("script");
+      const name = `pixels/${String(entry).padStart(5, "0")}.js`;
+      script.onload = () => script.remove();
+      script.onerror = () => reject(new Error(`${name} is not beside this page`));
+      script.src = name;
+      document.head.append(script);
+    });
+  }
+}
+RunFrames.mostBytes = 3e8;  // kept in memory, packed
+RunFrames.expected = new Map();
+
+/** What pixels/*.js call. */
+function relook_pixels(entry, text) {
+  RunFrames.expected.get(entry)(text);
+  RunFrames.expected.delete(entry);
+}
+
+/** 8-bit sRGB codes of linear values times 2^exposure, by the bits of a half, or by the upper 17 bits of a float32. */
+class DisplayTable {
+  constructor(exposure, isHalf) {
+    const count = isHalf ? 65536 : 131072, gain = 2 ** exposure;
+    const values = isHalf ? halfValues : new Float32Array(Uint32Array.from({ length: count }, (_, i) => i << 15).buffer);
+    this.shift = isHalf ? 0 : 15;
+    this.codes = new Uint8ClampedArray(count);
+    for (let i = 0; i < count; ++i) {
+      const value = values[i] * gain;
+      const code = value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055;
+      this.codes[i] = 255 * code;
+    }
+  }
+
+  /** Shows a frame on a canvas of its size, over black. */
+  paint(buffer, canvas) {
+    canvas.width = buffer.width;
+    canvas.height = buffer.height;
+    const context = canvas.getContext("2d"), image = context.createImageData(buffer.width, buffer.height);
+    const { R, G, B } = buffer.planes, { codes, shift } = this;
+    const pixels = new Uint32Array(image.data.buffer);
+    for (let i = 0; i < pixels.length; ++i)
+      pixels[i] = 0xff000000 | (codes[B[i] >>> shift] << 16) | (codes[G[i] >>> shift] << 8) | codes[R[i] >>> shift];
+    context.putImageData(image, 0, 0);
+  }
+}
+
+/** Marks the pixels of which any bit differs; their number. */
+function paintDifference(before, after, canvas) {
+  canvas.width = after.width;
+  canvas.height = after.height;
+  const context = canvas.getContext("2d"), image = context.createImageData(after.width, after.height);
+  const pixels = new Uint32Array(image.data.buffer), names = Object.keys(after.planes);
+  let count = 0;
+  for (let i = 0; i < pixels.length; ++i) {
+    let differs = false;
+    for (const name of names) differs = differs || before.planes[name][i] !== after.planes[name][i];
+    if (!differs) continue;
+    pixels[i] = 0xb0a51eff;
+    ++count;
+  }
+  context.putImageData(image, 0, 0);
+  return count;
+}

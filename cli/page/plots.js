@@ -1,0 +1,100 @@
+"use strict";
+// What the steps cost, over the steps; Chart.js draws.
+
+class Plots {
+  /** `open(entry)` is called for the step that is clicked. */
+  constructor(section, report, labels, open) {
+    Object.assign(this, { section, report, labels, open });
+    this.charts = [];
+    document.addEventListener("scheme", () => this.charts.length > 0 && this.draw());
+  }
+
+  column(read) {
+    return this.report.steps.map(read);
+  }
+
+  /** The plots: heading, what it says, kind, series of names and values. */
+  all() {
+    const full = this.report.full_render_seconds;
+    const stages = ["classify", "select", "test", "update", "evaluate", "write"];
+    const kinds = [["ray_paths", "ray paths"], ["ray_trees", "ray trees"], ["color_trees", "colour trees"], ["tunnels", "tunnels"]];
+    const moves = [["ray_trees", "ray trees"], ["sample_colors", "sample colours"], ["color_trees", "colour trees"], ["tunnels", "tunnels"]];
+    const moved = (what) => moves.map(([key, name]) => [name, this.column((step) => step[what][key])]);
+    const shown = [
+      { title: "Time by stage", text: "Seconds of each frame. Write: what the frame waits for.", kind: "stacked", unit: page.seconds,
+        series: stages.map((stage) => [stage, this.column((step) => step.seconds[stage])]) },
+      full ? { title: "Full render / step", text: `A full render takes ${page.seconds(full)}. Higher is better.`, kind: "line", log: true,
+        unit: (value) => `${Number(value.toPrecision(3))} x`,
+        series: [["ratio", this.column((step) => (step.step > 0 && step.seconds.total > 0 ? full / step.seconds.total : null))]] }
+        : { title: "Full render / step", text: "Not measured in this run: replay with --baseline or --verify.", series: [] },
+      { title: "Rays", text: "Stored segments tested against the selection, those culled before, and rays shot again.", kind: "line", log: true, unit: page.count,
+        series: [["tested", this.column((step) => step.ray_tests)], ["culled", this.column((step) => step.ray_tests_culled)],
+          ["ray updates", this.column((step) => step.ray_updates)], ["shadow updates", this.column((step) => step.shadow_updates)]] },
+      { title: "Memory by kind", text: "Bytes resident after each frame.", kind: "area", unit: page.bytes,
+        series: kinds.map(([key, name]) => [name, this.column((step) => step.resident[key])]) },
+      { title: "Pixels changed", text: "Of each frame; samples affected is what was looked at again.", kind: "line", log: true, unit: page.count,
+        series: [["pixels changed", this.column((step) => step.pixels_changed)], ["samples affected", this.column((step) => step.samples_affected)]] },
+    ];
+    const evictions = moved("evicted"), sum = (series) => series.flatMap(([, values]) => values).reduce((a, b) => a + b, 0);
+    const returned = [["rebuilt", this.column((step) => step.rebuilt.total)], ["reloaded", this.column((step) => step.reloaded.total)]];
+    if (sum(evictions) + sum(returned) > 0)
+      shown.push({ title: "Evictions", text: "Pieces that left memory by kind, and pieces that came back: traced again, or read.", kind: "stacked",
+        unit: page.count, series: [...evictions.map(([name, values]) => [`${name} out`, values]), ...returned] });
+    else shown.push({ title: "Evictions", text: "None: everything stayed in memory in this run.", series: [] });
+    return shown;
+  }
+
+  draw() {
+    for (const chart of this.charts) chart.destroy();
+    this.charts = [];
+    this.section.replaceChildren();
+    for (const plot of this.all()) {
+      const canvas = page.element("canvas", { role: "img", "aria-label": plot.title });
+      const figure = page.element("div", { className: "plot" }, page.element("h2", {}, plot.title), page.element("p", {}, plot.text));
+      this.section.append(figure);
+      if (plot.series.length === 0) continue;
+      figure.append(page.element("div", {}, canvas));
+      this.charts.push(new Chart(canvas, this.config(plot)));
+    }
+  }
+
+  config({ kind, log, unit, series }) {
+    const isBar = kind === "stacked", isStacked = isBar || kind === "area";
+    const text = page.color("soft"), line = page.color("line");
+    const datasets = series.map(([label, values], i) => {
+      const color = page.color(`series-${(i % 7) + 1}`);
+      return {
+        label, data: log ? values.map((value) => (value > 0 ? value : null)) : values, borderColor: color,
+        backgroundColor: isStacked ? `${color}cc` : color, borderWidth: isBar ? 0 : 1.5, fill: kind === "area",
+        pointRadius: this.labels.length > 80 ? 1 : 2.5, pointHitRadius: 6, spanGaps: false, maxBarThickness: 26,
+      };
+    });
+    return {
+      type: isBar ? "bar" : "line",
+      data: { labels: this.labels, datasets },
+      options: {
+        animation: false, responsive: true, maintainAspectRatio: false,
+        interaction: { mode: "index", intersect: false },
+        onClick: (event, items) => items.length > 0 && this.open(items[0].index),
+        scales: {
+          x: { stacked: isStacked, ticks: { color: text, maxRotation: 0, autoSkip: true }, grid: { display: false } },
+          y: { stacked: isStacked, type: log ? "logarithmic" : "linear", beginAtZero: true, grid: { color: line },
+            ticks: { color: text, maxTicksLimit: 7, callback: (value) => unit(Number(value)) } },
+        },
+        plugins: {
+          legend: { display: series.length > 1, labels: { color: text, boxWidth: 12, boxHeight: 12 } },
+          tooltip: {
+            callbacks: {
+              title: (items) => this.title(items[0].dataIndex),
+              label: (item) => `${item.dataset.label}: ${unit(item.raw ?? 0)}`,
+            },
+          },
+        },
+      },
+    };
+  }
+
+  title(entry) {
+    return `${this.labels[entry]} ${this.report.steps[entry].name}`;
+  }
+}
