@@ -191,12 +191,16 @@ class RunReport {
 
   showOverlays() {
     this.viewer.showsDifference = this.shownOverlays.has("changed");
-    this.viewer.overlays = this.overlayNames().filter(([kind]) => this.shownOverlays.has(kind)).map(([kind]) => {
+    const overlays = [];
+    this.viewer.overlays = overlays;  // of this step only: an image that comes late has its own list
+    for (const [kind] of this.overlayNames().filter(([name]) => this.shownOverlays.has(name))) {
       const image = new Image();
-      image.onload = () => this.viewer.draw();
+      image.onload = () => {
+        overlays.push(whiteParts(image));
+        this.viewer.draw();
+      };
       image.src = this.overlays[this.entry][kind];
-      return image;
-    });
+    }
     this.viewer.draw();
   }
 
@@ -242,7 +246,7 @@ class RunReport {
     if (edit?.select.length > 0) add("Selection", list(edit.select));
     if (edit?.edit) {
       add("The edit in words", list(edit.edit.map(words.operation)));
-      add("The edit", page.element("pre", {}, JSON.stringify(edit.edit, null, 1)));
+      add("The edit", page.element("pre", {}, words.json(edit.edit)));
     }
     add("Cost", page.table(this.costs(step)));
     this.addFiles(add, step);

@@ -113,7 +113,7 @@ PagePixels page_pixels(const std::filesystem::path& folder, const Json& steps, s
     if (is_beside) texts.clear();
   }
   Json channels = Json::array();
-  for (const FrameTiles::Channel& channel : run.last().channels())
+  for (const FrameTiles::Channel& channel : run.channels())
     channels.push_back({{"name", channel.name}, {"bytes", channel.bytes}});
   page.layout = {{"width", run.last().width()},
                  {"height", run.last().height()},

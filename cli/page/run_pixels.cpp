@@ -1,10 +1,12 @@
 #include "page/run_pixels.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "engine/exr_tiles.h"
 #include "engine/preview.h"
 #include "trace/ray_tree.h"
 
@@ -13,7 +15,26 @@ namespace {
 
 constexpr std::uint32_t kThumbnailWidth = 256;  // at the most
 
-bool is_same(BytesView a, BytesView b) { return std::ranges::equal(a, b); }
+bool is_color(const FrameTiles::Channel& channel) {
+  return channel.name.size() == 1 && std::string_view("RGBA").find(channel.name[0]) != std::string_view::npos;
+}
+
+/// The colour channels of a tile, row by row and channel by channel.
+std::vector<unsigned char> colors_of(const FrameTiles& frame, std::size_t tile) {
+  const std::vector<unsigned char> raw = frame.unpacked(tile);
+  const TileRect rect = tile_rect(tile, frame.width(), frame.height());
+  const std::size_t columns = rect.x1 - rect.x0;
+  std::vector<unsigned char> colors;
+  std::size_t from = 0;
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
+    for (const FrameTiles::Channel& channel : frame.channels()) {
+      const std::size_t bytes = columns * channel.bytes;
+      if (is_color(channel)) colors.insert(colors.end(), &raw[from], &raw[from] + bytes);
+      from += bytes;
+    }
+  }
+  return colors;
+}
 
 bool has_same_layout(const FrameTiles& a, const FrameTiles& b) {
   return a.width() == b.width() && a.height() == b.height() &&
@@ -23,14 +44,26 @@ bool has_same_layout(const FrameTiles& a, const FrameTiles& b) {
 
 }  // namespace
 
+std::vector<Bytes> RunPixels::packed_colors(const FrameTiles& frame) const {
+  std::vector<Bytes> packed(frame.count());
+  const bool has_layers = channels_.size() < frame.channels().size();
+  parallel_for(frame.count(), [&](std::size_t tile) {
+    const BytesView stored = frame.packed(tile);
+    packed[tile] = has_layers ? TileCompressor().zip(colors_of(frame, tile)) : Bytes(stored.begin(), stored.end());
+  });
+  return packed;
+}
+
 FramePixels RunPixels::take(Bytes file, std::string_view name) {
   FrameTiles frame(std::move(file), name);
   const bool is_first = last_.count() == 0;
   if (!is_first && !has_same_layout(frame, last_)) throw InputError(name, "", "not like the frames before it");
+  if (is_first) std::ranges::copy_if(frame.channels(), std::back_inserter(channels_), is_color);
+  std::vector<Bytes> all_packed = packed_colors(frame);
   FramePixels pixels;
   for (std::size_t tile = 0; tile < frame.count(); ++tile) {
-    const BytesView packed = frame.packed(tile);
-    if (!is_first && is_same(packed, last_.packed(tile))) continue;
+    const Bytes& packed = all_packed[tile];
+    if (!is_first && packed == packed_[tile]) continue;
     pixels.tiles.push_back(tile);
     pixels.sizes.push_back(packed.size());
     pixels.bytes.insert(pixels.bytes.end(), packed.begin(), packed.end());
@@ -42,6 +75,7 @@ FramePixels RunPixels::take(Bytes file, std::string_view name) {
     thumbnail_.pixels.resize(std::size_t{thumbnail_.width} * thumbnail_.height);
   }
   last_ = std::move(frame);
+  packed_ = std::move(all_packed);
   shrink(pixels.tiles);
   pixels.thumbnail = encode_png(thumbnail_);
   return pixels;
@@ -54,7 +88,7 @@ void RunPixels::shrink(const std::vector<std::size_t>& tiles) {
     const std::uint32_t columns = rect.x1 - rect.x0;
     for (std::uint32_t y0 = rect.y0; y0 < rect.y1; y0 += shrink_) {
       for (std::uint32_t x0 = rect.x0; x0 < rect.x1; x0 += shrink_) {
-        Rgba sum{};
+        Rgba sum(0, 0, 0, 0);
         float count = 0;
         for (std::uint32_t y = y0; y < std::min(y0 + shrink_, rect.y1); ++y) {
           for (std::uint32_t x = x0; x < std::min(x0 + shrink_, rect.x1); ++x, ++count) {

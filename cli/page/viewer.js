@@ -1,6 +1,16 @@
 "use strict";
 // Two frames on one canvas: wipe, blink, side by side or one of them; zoom, pan, overlays, and the pixel pointed at.
 
+/** The white pixels of an image, an overlay's outlines, on black: the frame below them is already there. */
+function whiteParts(image) {
+  const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
+  canvas.width = image.naturalWidth;
+  canvas.height = image.naturalHeight;
+  context.filter = "invert(1) brightness(255) grayscale(1) brightness(255) invert(1)";
+  context.drawImage(image, 0, 0);
+  return canvas;
+}
+
 class Viewer {
   /** Calls onPixel(x, y) when the pixel changes, and onChange() when zoom, mode or wipe do. */
   constructor(canvas, { onPixel, onChange }) {
@@ -8,7 +18,7 @@ class Viewer {
     this.before = document.createElement("canvas");
     this.after = document.createElement("canvas");
     this.difference = document.createElement("canvas");
-    this.overlays = [];  // images on top, the size of the frame
+    this.overlays = [];  // canvases of the size of the frame: white outlines on black
     this.showsDifference = false;
     this.mode = "wipe";
     this.wipe = 0.5;  // of the view's width
@@ -143,10 +153,8 @@ class Viewer {
     context.imageSmoothingEnabled = this.scale < 1;
     context.imageSmoothingQuality = "high";
     context.drawImage(image, x, y, width, height);
-    // The overlays hold the frame itself with outlines drawn on it: where they are no brighter, nothing shows.
     context.globalCompositeOperation = "lighten";
-    for (const overlay of this.overlays)
-      if (overlay.complete && overlay.naturalWidth > 0) context.drawImage(overlay, x, y, width, height);
+    for (const overlay of this.overlays) context.drawImage(overlay, x, y, width, height);
     context.globalCompositeOperation = "source-over";
     if (this.showsDifference) context.drawImage(this.difference, x, y, width, height);
     if (this.pixel) this.markPixel(context, x, y);

@@ -42,6 +42,12 @@ const words = {
     return typeof value === "string" ? `"${value}"` : JSON.stringify(value);
   },
 
+  /** Indented, lists of numbers in one line. */
+  json(value) {
+    return JSON.stringify(value, null, 1).replace(/\[\s*(-?[\d.e+-]+(?:,\s*-?[\d.e+-]+)*)\s*\]/g,
+      (match, list) => `[${list.replace(/,\s*/g, ", ")}]`);
+  },
+
   operation({ op, path, from, value }) {
     const tokens = words.tokens(path), entity = words.entity(tokens), property = words.property(tokens);
     const place = property ? `${entity}: ${property}` : entity;

@@ -1,0 +1,161 @@
+// report.html as a browser shows it (tests/pages), and as a file: its policy, what stands in it, its size.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+
+#include "base/files.h"
+#include "engine/frame_file.h"
+#include "run_program.h"
+
+namespace relook {
+namespace {
+
+const std::filesystem::path kProject = RELOOK_SOURCE_DIR;
+const std::filesystem::path kAssets = kProject / ".." / "shared" / "assets";
+
+void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+Json read_json(const std::filesystem::path& path) {
+  const Bytes bytes = read_file(path);
+  return parse_json(text_of(bytes), path.string());
+}
+
+void run_relook(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
+  const ProgramResult result = run_program(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+}
+
+/// What a browser must find, from the files of the run without its page.
+Json expectations(const std::filesystem::path& run, bool has_overlays) {
+  const Json report = read_json(run / "report.json");
+  Json expected{{"labels", Json::array()}, {"names", Json::array()}, {"pixels", Json::array()}};
+  for (const Json& step : report["steps"]) {
+    std::string label = std::to_string(step["step"].get<int>());
+    for (const char* kind : {"drag_frame", "wedge_frame"})
+      if (const Json& frame = step[kind]; frame.is_number()) {
+        const std::string digits = std::to_string(frame.get<int>());
+        label += digits.size() < 2 ? "_0" + digits : "_" + digits;
+      }
+    expected["labels"].push_back(label);
+    expected["names"].push_back(step["name"]);
+  }
+  const std::size_t last = report["steps"].size() - 1;
+  for (const std::size_t entry : {std::size_t{1}, last}) {
+    const Frame frame = decode_exr(run / report["steps"][entry]["frame"].get<std::string>());
+    const std::uint32_t x = frame.width / 2 + 9, y = frame.height / 2 - 7;
+    const Rgba& pixel = frame.pixels[std::size_t{y} * frame.width + x];
+    expected["pixels"].push_back(
+        {{"entry", entry}, {"x", x}, {"y", y}, {"rgba", {pixel.r, pixel.g, pixel.b, pixel.a}}});
+  }
+  expected["overlays"] = Json::array();
+  const std::string stem = std::filesystem::path(report["steps"][1]["preview"].get<std::string>()).stem().string();
+  for (const char* kind : {"dependent", "touched", "groups", "tunnels"})
+    if (has_overlays && std::filesystem::exists(run / "overlays" / (stem + "_" + kind + ".png")))
+      expected["overlays"].push_back(kind);
+  return expected;
+}
+
+void use_in_browser(const std::filesystem::path& run, bool has_overlays, const ScratchFolder& folder) {
+  write_text(folder / "expected.json", expectations(run, has_overlays).dump());
+  const char* kept = std::getenv("RELOOK_SCREENSHOTS");  // a folder to keep them in
+  const ProgramResult result =
+      run_program({"python3", (kProject / "tests/pages/report_page.py").string(), run.string(),
+                   (folder / "expected.json").string(), kept != nullptr ? kept : (folder / "").string()});
+  if (result.exit_code == 77) GTEST_SKIP() << "no chromium and chromedriver: report.html is NOT tried in a browser";
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+}
+
+TEST(Page, table1_on_spheres_in_a_browser) {
+  const ScratchFolder folder("page_table1");
+  run_relook({"preprocess", (kProject / "scenes/spheres/spheres.gltf").string(), "-o", (folder / "cache").string(),
+              "--resolution", "480x270", "--quiet"});
+  run_relook({"replay", (folder / "cache").string(), (kProject / "journals/table1.json").string(), "-o",
+              (folder / "run").string(), "--overlays", "--baseline", "--quiet"});
+  use_in_browser(folder / "run", true, folder);
+}
+
+TEST(Page, table3_on_garden_in_a_browser) {
+  const ScratchFolder folder("page_table3");
+  const ProgramResult made =
+      run_program({"python3", (kProject / "scenes/generate.py").string(), "garden", (folder / "garden").string(), "1"});
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  run_relook({"preprocess", (folder / "garden/garden.gltf").string(), "-o", (folder / "cache").string(), "--resolution",
+              "256x256", "--quiet"});
+  run_relook({"replay", (folder / "cache").string(), (kProject / "journals/table3.json").string(), "-o",
+              (folder / "run").string(), "--overlays", "--quiet"});
+  use_in_browser(folder / "run", true, folder);
+}
+
+TEST(Page, two_hundred_steps_on_toycar_in_a_browser) {
+  if (!std::filesystem::exists(kAssets)) GTEST_SKIP() << "no ../shared/assets: a page of 200 steps is NOT tested";
+  const ScratchFolder folder("page_toycar");
+  Json steps = Json::array();
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.5 + 0.0025 * i;
+    Json edit = Json::array();
+    if (i % 2 == 0)
+      edit.push_back({{"op", "replace"}, {"path", "/nodes/ToyCar/translation"}, {"value", {0.01 * (t - 0.5), 0, 0}}});
+    else
+      edit.push_back({{"op", "replace"},
+                      {"path", "/materials/Fabric/pbrMetallicRoughness/baseColorFactor"},
+                      {"value", {t, 1 - t, 0.5, 1}}});
+    steps.push_back({{"name", "step " + std::to_string(i + 1)}, {"edit", edit}});
+  }
+  write_text(folder / "long.json", Json{{"relook", "journal/1"}, {"steps", steps}}.dump());
+  run_relook({"preprocess", (kAssets / "toycar/ToyCar.gltf").string(), "-o", (folder / "cache").string(),
+              "--resolution", "480x270", "--camera", "auto", "--lights", "auto", "--quiet"});
+  run_relook({"replay", (folder / "cache").string(), (folder / "long.json").string(), "-o", (folder / "run").string(),
+              "--quiet"});
+  EXPECT_LT(std::filesystem::file_size(folder / "run/report.html"), 60'000'000U);
+  use_in_browser(folder / "run", false, folder);
+}
+
+class HostilePage : public testing::Test {
+ protected:
+  /// A run of the spheres with a material, a node and steps of hostile names.
+  void SetUp() override {
+    const std::string name = "</script><b>x</b><img src=x onerror='window.pwned=1'>&amp;\"";
+    const Bytes bytes = read_file(kProject / "scenes/spheres/spheres.gltf");
+    Json scene = parse_json(text_of(bytes), "spheres.gltf");
+    for (Json& material : scene["materials"])
+      if (material["name"] == "Paint") material["name"] = name;
+    std::filesystem::copy(kProject / "scenes/spheres", folder_ / "spheres", std::filesystem::copy_options::recursive);
+    write_text(folder_ / "spheres/spheres.gltf", scene.dump());
+    std::string token = name;
+    for (std::size_t at = 0; (at = token.find('/', at)) != std::string::npos; at += 2) token.replace(at, 1, "~1");
+    const auto step = [&](double red) {
+      return Json{{"name", name},
+                  {"edit",
+                   {{{"op", "replace"},
+                     {"path", "/materials/" + token + "/pbrMetallicRoughness/baseColorFactor"},
+                     {"value", {red, 0.2, 0.1, 1}}}}}};
+    };
+    write_text(folder_ / "j.json", Json{{"relook", "journal/1"}, {"steps", {step(0.9), step(0.1), step(0.5)}}}.dump());
+    run_relook({"preprocess", (folder_ / "spheres/spheres.gltf").string(), "-o", (folder_ / "cache").string(),
+                "--resolution", "160x90", "--quiet"});
+    run_relook({"replay", (folder_ / "cache").string(), (folder_ / "j.json").string(), "-o", (folder_ / "run").string(),
+                "--quiet"});
+    const Bytes page = read_file(folder_ / "run/report.html");
+    page_ = std::string(text_of(page));
+  }
+  ScratchFolder folder_{"page_hostile"};
+  std::string page_;
+};
+
+TEST_F(HostilePage, names_stay_text_in_a_browser) { use_in_browser(folder_ / "run", false, folder_); }
+
+TEST_F(HostilePage, nothing_in_the_file_is_remote_or_ends_a_script_early) {
+  EXPECT_NE(page_.find("default-src 'none'; script-src 'sha256-"), std::string::npos);
+  EXPECT_EQ(page_.find("unsafe-"), std::string::npos);
+  EXPECT_EQ(page_.find("<b>x"), std::string::npos);
+  EXPECT_EQ(page_.find("<img src=x"), std::string::npos);
+  const std::regex remote(R"re((src|href)\s*=\s*["']?(https?:)?//)re");
+  EXPECT_FALSE(std::regex_search(page_, remote));
+}
+
+}  // namespace
+}  // namespace relook
