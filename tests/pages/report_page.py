@@ -1,8 +1,8 @@
 """Opens RUN/report.html in headless Chromium and uses it as people do, by mouse and by keyboard.
 
 usage: report_page.py RUN EXPECTED SCREENSHOTS
-EXPECTED: a JSON file, {"labels": [...], "names": [...], "pixels": [{"entry", "x", "y", "rgba"}], "overlays": [...]}: what
-the run has, worked out without the page. Exit code 0; 1 with a line for each fault; 77 when there is no Chromium.
+EXPECTED: a JSON file, what the run has, worked out without the page: {"labels": [...], "names": [...], "pixels": [{"entry",
+"x", "y", "rgba"}], "changed": the entry that changed most, "overlays": [...] of that}. Exit code 0; 1 with a line for each fault; 77 when there is no Chromium.
 """
 
 import json
@@ -12,13 +12,22 @@ import sys
 import browser
 
 PAINTED = "return document.documentElement.dataset.painted === arguments[0] && !document.getElementById('step').hidden"
-# A hash of what the canvas shows; overlays that lie beside the page may not be read back.
-CANVAS = """const c = document.getElementById('view'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
-let h = 0; for (let i = 0; i < d.length; ++i) h = (h * 31 + d[i]) | 0; return h;"""
-COLUMN = """const c = document.getElementById('view'), x = Math.round(c.width * arguments[0]);
-return Array.from(c.getContext('2d').getImageData(x, 40, 1, c.height - 80).data).join();"""
-MEAN = """const c = document.getElementById('view'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
-let s = 0; for (let i = 0; i < d.length; ++i) s += d[i]; return s / d.length;"""
+# What the canvas shows, as a hash, as the bytes of a column, as the first column in which two canvases differ, as a mean.
+# Overlays that lie beside the page may not be read back.
+READ = """const v = document.getElementById('view'), s = document.createElement('canvas');
+s.width = v.width; s.height = v.height;
+const g = s.getContext('2d', {willReadFrequently: true}); g.drawImage(v, 0, 0);
+const read = (x, w) => g.getImageData(x, 40, w, s.height - 40).data, d = read(0, s.width);"""
+CANVAS = READ + "let h = 0; for (let i = 0; i < d.length; ++i) h = (h * 31 + d[i]) | 0; return h;"
+COLUMN = READ + "return read(Math.round(s.width * arguments[0]), 1).join();"
+KEEP = READ + "window.kept = d; return true;"
+DIFFERING = READ + """for (let x = Math.round(s.width * 0.15); x < s.width * 0.85; ++x)
+  for (let y = 0; y < s.height - 40; ++y) {
+    const i = (y * s.width + x) * 4;
+    if (Math.abs(d[i] - kept[i]) + Math.abs(d[i + 1] - kept[i + 1]) > 8) return (x + 0.2) / s.width;
+  }
+return 0;"""
+MEAN = READ + "let t = 0; for (let i = 0; i < d.length; ++i) t += d[i]; return t / d.length;"
 BOX = "const r = document.querySelector(arguments[0]).getBoundingClientRect(); return [r.x, r.y, r.width, r.height];"
 
 
@@ -70,25 +79,30 @@ class ReportPage:
 
     def wipe(self):
         """On both sides of the line stands what the key 1 or 2 shows there."""
-        self.open_step(1)
-        column = lambda: self.window.run(COLUMN, 0.37)
+        self.open_step(self.expected["changed"])
+        self.window.key("1")
+        self.window.run(KEEP)
+        self.window.key("2")
+        place = self.window.run(DIFFERING)
+        self.check(place > 0, "before and after look alike")
+        column = lambda: self.window.run(COLUMN, place)
+        after = column()
         self.window.key("1")
         before = column()
-        self.window.key("2")
-        after = column()
-        self.check(before != after, "before and after look alike at the column that is tested")
         self.window.click("[data-mode=wipe]")
-        self.check(column() == before, "left of the wipe is not the frame before")
         x, y, width, height = self.window.run(BOX, "#view")
         middle = y + height / 2
-        self.window.mouse(("move", x + width / 2, middle), ("down",), ("move", x + width * 0.3, middle),
-                          ("move", x + width * 0.25, middle), ("up",))
+        self.window.mouse(("move", x + width / 2, middle), ("down",), ("move", x + width * 0.9, middle), ("up",))
+        self.check(column() == before, "left of the wipe is not the frame before")
+        self.window.mouse(("move", x + width * 0.9, middle), ("down",), ("move", x + width * 0.5, middle),
+                          ("move", x + width * (place - 0.08), middle), ("up",))
         self.check(column() == after, "the wipe does not follow the mouse")
-        for _ in range(6):
+        for _ in range(4):
             self.window.key("]")
         self.check(column() == before, "the wipe does not follow the keys")
 
     def modes(self):
+        self.open_step(self.expected["changed"])
         seen = set()
         for key, mode in (("s", "side"), ("b", "blink"), ("w", "wipe")):
             self.window.key(key)
@@ -126,7 +140,7 @@ class ReportPage:
             self.window.key("0")
 
     def exposure(self):
-        self.open_step(1)
+        self.open_step(self.expected["changed"])
         before = self.window.run(MEAN)
         self.window.key("E")
         self.check(self.window.run(MEAN) < before, "half a stop darker is not darker")
@@ -134,7 +148,7 @@ class ReportPage:
         self.check(self.window.run(MEAN) == before, "r does not bring the exposure back")
 
     def overlays(self):
-        self.open_step(1)
+        self.open_step(self.expected["changed"])
         plain = self.window.run(CANVAS)
         self.window.click("[data-overlay=changed]")
         self.check(self.pressed("[data-overlay=changed]") and self.window.run(CANVAS) != plain, "changed pixels do not show")
