@@ -5,6 +5,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 . scenes/setup.sh
+packages="$packages chromium chromium-driver"  # report.html is tried in a browser
 install_packages
 build relook relook_tests
 
