@@ -74,7 +74,7 @@ class Resume : public testing::Test {
   [[nodiscard]] std::map<std::string, Bytes> files(const std::string& run) const {
     std::map<std::string, Bytes> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(at(run)))
-      if (entry.is_regular_file() && entry.path().filename() != "report.json")
+      if (entry.is_regular_file() && entry.path().stem() != "report")
         files[entry.path().lexically_relative(at(run)).string()] = frame_bytes(entry.path());
     return files;
   }
