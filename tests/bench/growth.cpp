@@ -1,7 +1,9 @@
 #include "growth.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <map>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -70,21 +72,33 @@ TimedStep time_unseen(Replayer& replayer, const Journal& journal) {
   return time_edit(replayer, one_operation(PatchOp::replace, path + "/translation", aside), journal);
 }
 
-void print_edit(const char* name, const TimedStep& step) {
+void print_edit(const BenchOptions& options, const char* name, const TimedStep& step) {
   const auto affected = static_cast<double>(step.result.counters.samples_affected);
   std::printf("  %-30s %10.0f %10.2f", name, affected, step.seconds * 1e3);
   if (affected > 0) std::printf(" %10.0f", step.seconds / affected * 1e9);
+  const std::string size = std::to_string(options.width) + "x" + std::to_string(options.height);
+  if (affected > 0)
+    options.note("Growth", name, size, step.seconds / affected * 1e9, "ns an affected sample");
+  else
+    options.note("Growth", name, size, step.seconds * 1e3, "ms", "", Goal{1, true});
   std::printf("\n");
 }
 
-void print_size(const BenchOptions& options, const Journal& journal) {
+/// By edit: nanoseconds an affected sample, of each size.
+using Growth = std::map<std::string, std::vector<double>>;
+
+void print_size(const BenchOptions& options, const Journal& journal, Growth& growth) {
   SceneState state = load_scene(options);
   RenderStats stats;
   Image image = preprocess(state.scene(), options.view, stats);
   Replayer replayer(std::move(state), std::move(image));
   std::printf("%ux%u, %.1f M samples\n", options.width, options.height, options.samples() * 1e-6);
-  for (const char* name : kSteps) print_edit(name, time_edit(replayer, whole_edit(step_named(journal, name)), journal));
-  print_edit("move of something unseen", time_unseen(replayer, journal));
+  for (const char* name : kSteps) {
+    const TimedStep step = time_edit(replayer, whole_edit(step_named(journal, name)), journal);
+    print_edit(options, name, step);
+    growth[name].push_back(step.seconds / static_cast<double>(step.result.counters.samples_affected) * 1e9);
+  }
+  print_edit(options, "move of something unseen", time_unseen(replayer, journal));
 }
 
 }  // namespace
@@ -96,11 +110,15 @@ void print_growth(BenchOptions options) {
       "unseen move under 1 ms\n",
       options.scene.c_str(), thread_count(), kRuns);
   std::printf("  %-30s %10s %10s %10s\n", "edit", "affected", "ms", "ns/sample");
+  Growth growth;
   for (const Size& size : kSizes) {
     options.width = size.width;
     options.height = size.height;
-    print_size(options, journal);
+    print_size(options, journal, growth);
   }
+  for (const auto& [name, prices] : growth)
+    options.note("Growth", name, "dearest / cheapest sample",
+                 *std::ranges::max_element(prices) / *std::ranges::min_element(prices), "", "", Goal{1.2, true});
 }
 
 }  // namespace relook

@@ -20,6 +20,13 @@ BenchOptions parse_options(int count, char** arguments) {
   return options;
 }
 
+void BenchOptions::note(std::string table, std::string row, std::string column, double value, std::string unit,
+                        std::string paper, std::optional<Goal> goal) const {
+  if (record == nullptr) return;
+  record->add(
+      {"", std::move(table), std::move(row), std::move(column), value, std::move(unit), std::move(paper), goal});
+}
+
 SceneState load_scene(const BenchOptions& options) {
   LookDocument document = make_look_document(import_gltf(options.scene));
   const std::string choice = document.cameras.empty() ? "auto" : "";

@@ -6,6 +6,7 @@
 #include "edit/journal.h"
 #include "engine/image.h"
 #include "engine/replay.h"
+#include "record.h"
 #include "scene/state.h"
 
 namespace relook {
@@ -14,7 +15,10 @@ struct BenchOptions {
   std::string scene, journal;  // journal "-": none
   std::uint32_t width = 1920, height = 1080;
   ViewOptions view;
+  Record* record = nullptr;  // gets what note() is told, if there is one
 
+  void note(std::string table, std::string row, std::string column, double value, std::string unit = "",
+            std::string paper = "", std::optional<Goal> goal = std::nullopt) const;
   [[nodiscard]] double pixels() const { return static_cast<double>(width) * height; }
   [[nodiscard]] double samples() const { return pixels() * view.samples; }
 };

@@ -1,5 +1,6 @@
 #include "table3_looks.h"
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -95,7 +96,7 @@ void print_percent(double without, double with) {
     std::printf(" %9s", "-");
 }
 
-void print_look(const std::string& name, const LookPair& look, double full_seconds) {
+void print_look(const BenchOptions& options, const std::string& name, const LookPair& look, double full_seconds) {
   const PaperSelection paper = paper_selection(name);
   const LookTimes &without = look.without, &with = look.with;
   std::printf("%-28.28s %-8s %8.2f %8.2f %8.2f %8.2f %8.2f %8.2f", name.c_str(),
@@ -107,9 +108,15 @@ void print_look(const std::string& name, const LookPair& look, double full_secon
   print_percent(look.search.without, look.search.with);
   print_percent(paper.without, paper.with);
   std::printf(" %9.0f %9.0f\n", full_seconds / with.step.seconds, full_seconds / (with.step.seconds - with.selection));
+  if (look.search.without > 0)
+    options.note("Table 3, selection preprocessing", name, "saved by groups",
+                 100 * (look.search.without - look.search.with) / look.search.without, "%",
+                 paper.without > 0
+                     ? std::to_string(std::lround(100 * (paper.without - paper.with) / paper.without)) + " %"
+                     : "");
 }
 
-void print_optical(const std::string& name, const LookPair& look, const BenchOptions& options) {
+void print_optical(const std::string& name, const LookPair& look, const BenchOptions& options, double full_seconds) {
   const TimedStep& step = look.with.step;
   const Counters& counters = step.result.counters;
   std::printf(
@@ -119,11 +126,14 @@ void print_optical(const std::string& name, const LookPair& look, const BenchOpt
       100 * static_cast<double>(counters.ray_updates + counters.shadow_updates) / static_cast<double>(look.segments),
       100 * static_cast<double>(counters.pixels_changed) / options.pixels(), step.seconds * 1e3, look.work * 1e3,
       step.seconds / look.work);
+  options.note("Table 3, optical row", name, "full render / edit", full_seconds / step.seconds, "", "67 to 75",
+               Goal{67});
+  options.note("Table 3, optical row", name, "edit / work", step.seconds / look.work);
 }
 
 }  // namespace
 
-void print_steps(Replayer& replayer, const Journal& journal, double full_seconds) {
+void print_steps(const BenchOptions& options, Replayer& replayer, const Journal& journal, double full_seconds) {
   std::printf("\n%-28s %-9s %9s %9s %9s  %9s  %s\n", "step", "class", "affected", "changed", "ms", "full/edit",
               "paper");
   for (const JournalStep& step : journal.steps) {
@@ -136,6 +146,8 @@ void print_steps(Replayer& replayer, const Journal& journal, double full_seconds
                   std::string(change_class_name(result.classification.change)).c_str(),
                   100 * static_cast<double>(result.counters.samples_affected) / total, result.changed_pixels.size(),
                   seconds * 1e3, full_seconds / seconds, paper_ratio(step.name));
+      options.note("Table 3, every step once", step.name, "full render / step", full_seconds / seconds, "",
+                   paper_ratio(step.name));
     }
   }
 }
@@ -161,10 +173,10 @@ void print_looks(const BenchOptions& options, const Image& image, const Journal&
   std::printf("%-28s %-8s %8s %8s %8s %8s %8s %8s %9s %9s %9s %9s %9s %9s\n", "step", "class", "select 0", "select 4",
               "edit 0", "edit 4", "search 0", "search 4", "select", "edit", "search", "paper", "full/edit", "- select");
   for (std::size_t i = 0; i < looks.size(); ++i)
-    if (is_look(looks[i].with.step)) print_look(journal.steps[i].name, looks[i], full_seconds);
+    if (is_look(looks[i].with.step)) print_look(options, journal.steps[i].name, looks[i], full_seconds);
   for (std::size_t i = 0; i < looks.size(); ++i)
     if (looks[i].with.step.result.classification.change == ChangeClass::optical)
-      print_optical(journal.steps[i].name, looks[i], options);
+      print_optical(journal.steps[i].name, looks[i], options, full_seconds);
 }
 
 }  // namespace relook

@@ -5,7 +5,7 @@
 namespace relook {
 
 /// Prints every step of the journal, replayed once in order.
-void print_steps(Replayer& replayer, const Journal& journal, double full_seconds);
+void print_steps(const BenchOptions& options, Replayer& replayer, const Journal& journal, double full_seconds);
 
 /// Prints the colour and optical steps with and without groups. `image`: preprocessed from the scene of `options`.
 void print_looks(const BenchOptions& options, const Image& image, const Journal& journal, double full_seconds);

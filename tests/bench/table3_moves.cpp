@@ -88,9 +88,25 @@ struct Row {
   }
 };
 
+/// Releasing a selection changes no pixel, and has no ideal.
+void note_row(const BenchOptions& options, const std::string& name, const Row& row, double full_seconds,
+              double paper_seconds, bool has_tunnels) {
+  const char* const table = "Table 3, geometric rows";
+  char paper[32] = "";
+  if (paper_seconds > 0) std::snprintf(paper, sizeof paper, "%.1f", kPaperFull / paper_seconds);
+  options.note(table, name, "full render / time", full_seconds / row.seconds, "", paper);
+  if (row.share > 0) {
+    const auto goal = has_tunnels ? std::optional(Goal{1.5, true}) : std::nullopt;
+    options.note(table, name, "time / ideal", row.seconds / (full_seconds * row.share), "", "", goal);
+    if (row.work > 0) options.note(table, name, "time / work", row.seconds / row.work);
+  }
+  if (has_tunnels && row.culled > 0)
+    options.note(table, name, "ray tests culled", 100 * row.culled, "%", "65 to 90 %", Goal{95});
+}
+
 /// `paper_seconds`: of this part; 0: not known.
-void print_row(const std::string& name, std::size_t tunnels, const char* part, const Row& row, double full_seconds,
-               double paper_seconds) {
+void print_row(const BenchOptions& options, const std::string& name, std::size_t tunnels, const char* part,
+               const Row& row, double full_seconds, double paper_seconds) {
   std::printf("%-26.26s %zu %-14s %9.2f %9.1f", name.c_str(), tunnels, part, row.seconds * 1e3,
               full_seconds / row.seconds);
   if (paper_seconds > 0)
@@ -104,6 +120,8 @@ void print_row(const std::string& name, std::size_t tunnels, const char* part, c
   else
     std::printf(" %8.2f%% %8s %7s %8s %7s", 0.0, "-", "-", "-", "-");
   std::printf(" %8.1f%%\n", 100 * row.culled);
+  note_row(options, name + ", " + std::to_string(tunnels) + " tunnel(s), " + part, row, full_seconds, paper_seconds,
+           tunnels > 0);
 }
 
 void print_move(const BenchOptions& options, const std::string& name, std::size_t tunnels, const MoveTimes& times,
@@ -118,10 +136,10 @@ void print_move(const BenchOptions& options, const std::string& name, std::size_
   if (!times.later.empty()) later.divide(static_cast<double>(times.later.size()));
   release.add(times.release, 0, options.pixels());
   merged.add(times.merged, times.merged_work, options.pixels());
-  print_row(name, tunnels, "remove + frame", first, full_seconds, removing + rendering);
-  if (!times.later.empty()) print_row(name, tunnels, "frame", later, full_seconds, rendering);
-  print_row(name, tunnels, "release", release, full_seconds, releasing);
-  print_row(name, tunnels, "merged", merged, full_seconds, removing + rendering + releasing);
+  print_row(options, name, tunnels, "remove + frame", first, full_seconds, removing + rendering);
+  if (!times.later.empty()) print_row(options, name, tunnels, "frame", later, full_seconds, rendering);
+  print_row(options, name, tunnels, "release", release, full_seconds, releasing);
+  print_row(options, name, tunnels, "merged", merged, full_seconds, removing + rendering + releasing);
 }
 
 /// Walks the journal, the moves step by step.
