@@ -6,64 +6,12 @@
 
 #include "base/error.h"
 #include "engine/report.h"
+#include "page/page.h"
 
 namespace relook {
 namespace {
 
-constexpr const char* kHead =
-    "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src "
-    "data:; base-uri 'none'; form-action 'none'\">\n"
-    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>relook compare</title>\n<style>\n"
-    ":root { color-scheme: light dark; --line: #d2d2ce; --soft: #5b5e63; --good: #e3f4e6; --bad: #fbe6df; }\n"
-    "@media (prefers-color-scheme: dark) { :root { --line: #3d4044; --soft: #a3a7ad; --good: #1d3a24; --bad: #4a261c; "
-    "} }\n"
-    "body { font: 14px/1.45 system-ui, sans-serif; margin: 1.5rem; }\n"
-    "h1 { font-size: 1.25rem; } h2 { font-size: 1.15rem; } h3 { font-size: 1rem; margin-bottom: .3rem; }\n"
-    "table { border-collapse: collapse; margin: .5rem 0 1.5rem; }\n"
-    "th, td { border: 1px solid var(--line); padding: .15rem .5rem; text-align: right; }\n"
-    "th { font-weight: 600; } th.name, td.name, h2, h3 { text-align: left; overflow-wrap: anywhere; }\n"
-    ".equal, .within { background: var(--good); } .failure, .warning { background: var(--bad); }\n"
-    "figure { display: inline-block; margin: 0 .5rem .5rem 0; max-width: 32%; } img { max-width: 100%; display: "
-    "block;\n"
-    "image-rendering: pixelated; background: #000; } figcaption { color: var(--soft); }\n"
-    "</style>\n</head>\n<body>\n<h1>relook compare</h1>\n";
-
-/// Text for elements and quoted attributes.
-std::string html(std::string_view text) {
-  std::string result;
-  for (const char c : printable(text)) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
-std::string base64(BytesView bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      group = group << 8 | (i + k < bytes.size() ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63U];
-  }
-  return text;
-}
+std::string html(std::string_view text) { return escaped_html(printable(text)); }
 
 std::string number(double value) {
   char digits[32];
@@ -101,8 +49,8 @@ std::string frame_row(const std::string& name, const FrameComparison& comparison
 }
 
 std::string figure(const Bytes& png, std::string_view caption) {
-  return "<figure><img alt=\"" + html(caption) + "\" src=\"data:image/png;base64," + base64(png) + "\"><figcaption>" +
-         html(caption) + "</figcaption></figure>";
+  return "<figure><img alt=\"" + html(caption) + "\" src=\"" + png_url(png) + "\"><figcaption>" + html(caption) +
+         "</figcaption></figure>";
 }
 
 std::string column_head(const RunTable::Column& column) {
@@ -162,7 +110,11 @@ void ComparePage::set_runs(const RunTable& table) {
 }
 
 std::string ComparePage::text() const {
-  return kHead + pairs_ + runs_ + "<p>relook " + html(program_version()) + "</p>\n</body>\n</html>\n";
+  Page page;
+  page.title = "relook compare";
+  page.styles = {"compare.css"};
+  page.body = "<h1>relook compare</h1>\n" + pairs_ + runs_ + "<p>relook " + html(program_version()) + "</p>\n";
+  return page_text(page);
 }
 
 }  // namespace relook

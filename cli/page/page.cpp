@@ -30,6 +30,7 @@ std::string policy(const Page& page) {
   for (const std::string_view name : page.styles) styles += hash_source(asset(name));
   // What a script of the page adds itself is admitted with it; nothing else is.
   if (page.has_files_beside) scripts += " 'strict-dynamic'";
+  if (scripts.empty()) scripts = " 'none'";
   return "default-src 'none'; script-src" + scripts + "; style-src" + styles +
          "; img-src data: 'self' file:; base-uri 'none'; form-action 'none'";
 }
@@ -44,13 +45,15 @@ std::string page_text(const Page& page) {
   text += "<title>" + escaped_html(page.title) + "</title>\n";
   for (const std::string_view name : page.styles)
     text.append("<style>").append(asset(name).text()).append("</style>\n");
-  text.append("</head>\n<body>\n").append(asset(page.body).text());
+  text.append("</head>\n<body>\n").append(page.body);
   for (const auto& [id, value] : page.data)
     text += "<script type=\"application/json\" id=\"" + escaped_html(id) + "\">" + script_json(value) + "</script>\n";
   for (const std::string_view name : page.scripts)
     text.append("<script>").append(asset(name).text()).append("</script>\n");
   return text + "</body>\n</html>\n";
 }
+
+std::string_view asset_text(std::string_view name) { return asset(name).text(); }
 
 std::string escaped_html(std::string_view text) {
   std::string escaped;

@@ -15,12 +15,15 @@ namespace relook {
 struct Page {
   std::string title;                               // any text
   std::vector<std::string_view> styles, scripts;   // names of assets in this folder, in their order in the page
-  std::string_view body;                           // name of an asset: HTML that holds no data
+  std::string body;                                // HTML; what it holds of data is escaped
   std::vector<std::pair<std::string, Json>> data;  // by the id of the element that holds it
   bool has_files_beside = false;                   // scripts may load data scripts from beside the page
 };
 
 [[nodiscard]] std::string page_text(const Page& page);
+
+/// An asset's text, such as the body of a page.
+[[nodiscard]] std::string_view asset_text(std::string_view name);
 
 /// Text as HTML shows it, in elements and in quoted attributes.
 [[nodiscard]] std::string escaped_html(std::string_view text);

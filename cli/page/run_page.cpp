@@ -134,7 +134,7 @@ void write_run_page(const std::filesystem::path& folder, const Json& report, con
   page.title = "relook: " + journal.name;
   page.styles = {"page.css", "report.css"};
   page.scripts = {"chart.min.js", "page.js", "pixels.js", "viewer.js", "plots.js", "words.js", "keys.js", "report.js"};
-  page.body = "report.html";
+  page.body = asset_text("report.html");
   page.has_files_beside = pixels.embedded.is_null();
   page.data = {{"report", report},
                {"edits", edits_json(steps, journal)},
