@@ -209,6 +209,11 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_frame_options(replay, arguments);
   add_structures(replay, arguments, raw);
   replay
+      .add_option(
+          "--params", arguments.structures.params,
+          "Pointers to what is subject to change: colour trees are kept for each of these alone, from the start")
+      ->type_name("POINTER");
+  replay
       .add_option("--policy", arguments.structures.policy,
                   "What leaves memory first: weight (the paper's), lru, size, gdsf")
       ->check(CLI::IsMember({"weight", "lru", "size", "gdsf"}));

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "edit/apply.h"
 #include "engine/cached_image.h"
+#include "engine/chosen_parameters.h"
 #include "engine/compare.h"
 #include "engine/render.h"
 #include "load_cache.h"
@@ -99,6 +100,11 @@ class JournalRun {
              const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
              const std::filesystem::path& folder);
 
+  /// Builds their colour trees; no others will be kept.
+  void choose_parameters(const std::vector<ParameterSet>& sets) {
+    const TraceScope span = console_.span("colour trees of --params");
+    replayer_.choose_parameters(sets);
+  }
   /// `place`: of this run among `runs`, from 0. Writes the report at the end of the run, or when a signal ends it; an
   /// error leaves none. Returns the number of pixels that --verify found different.
   std::uint64_t run(std::size_t place, std::size_t runs);
@@ -131,6 +137,13 @@ class JournalRun {
   std::size_t frames_ = 0;                      // of these steps
   double runs_before_ = 0, runs_ = 1;           // of the command, for its progress
 };
+
+/// Of what --params names, each.
+std::vector<ParameterSet> chosen_parameters(SceneState& state, const std::vector<std::string>& pointers) {
+  std::vector<ParameterSet> sets;
+  for (const std::string& pointer : pointers) sets.push_back(parameters_at(state, pointer));
+  return sets;
+}
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
                        const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
@@ -390,7 +403,9 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
     if (i > 0) restored = restore(i + 1 < journals.size() ? content : std::move(content), cache);
+    const std::vector<ParameterSet> chosen = chosen_parameters(*restored.state, arguments.structures.params);
     JournalRun run(arguments, console, journals[i], std::move(restored), facts, view, folders[i]);
+    if (!chosen.empty()) run.choose_parameters(chosen);
     pixels_different += run.run(i, journals.size());
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
   }

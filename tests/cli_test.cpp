@@ -214,6 +214,26 @@ TEST_F(Cli, structure_options_are_recorded_and_change_no_frame) {
   EXPECT_EQ(tight["options"]["groups"], 0);
 }
 
+TEST_F(Cli, colour_trees_of_chosen_parameters_change_no_frame) {
+  ASSERT_EQ(preprocess("c").exit_code, 0);
+  write_text(at("j.json"), kJournal);
+  const auto replay = [&](const std::string& run, const std::vector<std::string>& params) {
+    std::vector<std::string> words{"replay", at("c"), at("j.json"), "-o", at(run), "--quiet"};
+    words.insert(words.end(), params.begin(), params.end());
+    return relook(words);
+  };
+  ASSERT_EQ(replay("plain", {}).exit_code, 0);
+  ASSERT_EQ(replay("chosen", {"--params", "/materials/Paint", "/lights"}).exit_code, 0);
+  const Json plain = read_json(at("plain/report.json")), chosen = read_json(at("chosen/report.json"));
+  EXPECT_EQ(plain["frames"], chosen["frames"]);
+  EXPECT_EQ(chosen["options"]["params"], (Json{"/materials/Paint", "/lights"}));
+  EXPECT_EQ(chosen["steps"][1]["regions"]["groups"]["visited"], 0) << "there before the first edit";
+  for (const char* pointer : {"/materials/Pant", "/nodes/Pane", "lights"}) {
+    expect_error(replay("wrong", {"--params", pointer}), 2, std::string("--params: ") + pointer);
+    EXPECT_FALSE(std::filesystem::exists(at("wrong")));
+  }
+}
+
 TEST_F(Cli, shadow_bits_are_fixed_by_preprocess) {
   ASSERT_EQ(preprocess("c").exit_code, 0);
   ASSERT_EQ(

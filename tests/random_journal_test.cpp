@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "base/parallel.h"
+#include "engine/chosen_parameters.h"
 #include "engine/render.h"
 #include "engine/replay.h"
 #include "random_changes.h"
@@ -49,6 +50,17 @@ RegionOptions random_regions(Dice& dice) {
   std::cout << "groups " << regions.groups << ", tunnels " << regions.tunnels << ", atoms " << regions.atoms
             << ", color trees " << regions.color_trees << "\n";
   return regions;
+}
+
+/// Perhaps only colour trees of a few things are kept.
+void choose_at_random(Replayer& replayer, Dice& dice) {
+  if (dice.chance(0.5)) return;
+  SceneState again = compiled_again(replayer.state());
+  std::vector<ParameterSet> sets;
+  for (const char* pointer : {"/materials/Matte", "/materials/Mirror/pbrMetallicRoughness", "/lights", "/scene"})
+    if (dice.chance(0.5)) sets.push_back(parameters_at(again, pointer));
+  replayer.choose_parameters(sets);
+  std::cout << sets.size() << " sets of parameters chosen\n";
 }
 
 void expect_full_render(const Replayer& replayer, const std::string& what) {
@@ -110,6 +122,7 @@ TEST_P(RandomJournal, EveryFrameIsAFullRender) {
   Dice dice(seed + 7919 * samples + static_cast<std::uint64_t>(scene));
   const ViewOptions view{samples, 5, shadow_bits};
   Replayer replayer = replayer_of(scene, view, random_regions(dice));
+  choose_at_random(replayer, dice);
   std::size_t steps_that_changed = 0;
   for (std::size_t k = 1; k <= kSteps; ++k) {
     const Change change = random_change(replayer.state().document().look, dice);

@@ -4,6 +4,8 @@
 
 #include <random>
 
+#include "base/error.h"
+#include "engine/chosen_parameters.h"
 #include "engine/render.h"
 #include "engine/replay.h"
 #include "region_checks.h"
@@ -74,6 +76,7 @@ struct RecolorCase {
   TestScene scene;
   std::uint32_t samples;
   double color_trees;
+  std::vector<std::string> chosen = {};  // pointers; none: every set that is edited
 };
 class Recolor : public testing::TestWithParam<RecolorCase> {};
 
@@ -83,7 +86,10 @@ TEST_P(Recolor, ParametersInTurnsWithOtherEditsInBetween) {
   Image image = preprocessed(state.scene(), {c.samples, 5, 0});
   RegionOptions options;
   options.color_trees = c.color_trees;
+  std::vector<ParameterSet> chosen;
+  for (const std::string& pointer : c.chosen) chosen.push_back(parameters_at(state, pointer));
   Replayer replayer(std::move(state), std::move(image), options);
+  if (!chosen.empty()) replayer.choose_parameters(chosen);
   Values values(1996 + c.samples);
   std::vector<std::size_t> few;  // mostly these in turns
   for (int i = 0; i < 4; ++i) few.push_back(values.below(parameters().size()));
@@ -105,11 +111,15 @@ std::vector<RecolorCase> recolor_cases() {
     for (const double share : {0.0, 0.05, 1.0}) cases.push_back({scene, 1, share});
   cases.push_back({TestScene::study, 4, 1.0});
   cases.push_back({TestScene::cards, 4, 0.2});
+  cases.push_back({TestScene::spheres, 1, 1.0, {"/materials/Matte", "/lights/Lamp", "/materials/Glass"}});
+  cases.push_back({TestScene::study, 1, 1.0, {"/scene/extras/relook", "/textures/Marble", "/materials"}});
+  cases.push_back({TestScene::cards, 1, 0.1, {"/lights/Lamp/color", "/lights/Lamp/intensity", "/materials/Mirror"}});
   return cases;
 }
 std::string case_name(const testing::TestParamInfo<RecolorCase>& info) {
   return std::string(test_scene_name(info.param.scene)) + "_" + std::to_string(info.param.samples) + "_samples_" +
-         std::to_string(static_cast<int>(info.param.color_trees * 100)) + "_percent";
+         std::to_string(static_cast<int>(info.param.color_trees * 100)) + "_percent" +
+         (info.param.chosen.empty() ? "" : "_chosen");
 }
 INSTANTIATE_TEST_SUITE_P(Scenes, Recolor, testing::ValuesIn(recolor_cases()), case_name);
 
@@ -124,6 +134,41 @@ TEST(RecolorCost, TheSecondEditOfAParameterLooksForNothing) {
   EXPECT_EQ(second.counters.by_groups.visited, 0U);
   EXPECT_EQ(first.counters.samples_affected, second.counters.samples_affected);
   EXPECT_GT(replayer.resident().color_trees, first.counters.samples_affected * sizeof(Rgba));
+}
+
+TEST(ChosenParameters, AreWhatCanChangeBelowAPointer) {
+  const SceneState before = test_scene(TestScene::study, 40, 30);
+  SceneState state = test_scene(TestScene::study, 40, 30);
+  const ParameterSet factor = parameters_at(state, "/materials/Matte/pbrMetallicRoughness/baseColorFactor");
+  ASSERT_EQ(factor.materials.size(), 1U);
+  EXPECT_EQ(factor.materials[0].second, mask_of(Field::base_color));
+  EXPECT_EQ(parameters_at(state, "/materials/Matte/pbrMetallicRoughness/baseColorFactor/2"), factor);
+  const ParameterSet all = parameters_at(state, "/materials/Matte");
+  EXPECT_TRUE(all.contains(factor));
+  EXPECT_FALSE(factor.contains(all));
+  EXPECT_NE(all.materials[0].second & mask_of(Field::roughness), 0U);
+  EXPECT_EQ(parameters_at(state, "/lights/Lamp/intensity").lights.size(), 1U);
+  EXPECT_TRUE(parameters_at(state, "/scene/extras/relook/environment").environment);
+  EXPECT_EQ(state.document().look, before.document().look);
+  for (const char* pointer : {"/materials/Mat", "/nodes/Ball/translation", "materials", "/materials/Glass/name",
+                              "/materials/Glass/extensions/KHR_materials_ior/ior"})
+    EXPECT_THROW((void)parameters_at(state, pointer), InputError) << pointer;
+}
+
+TEST(RecolorCost, TheFirstEditOfAChosenParameterLooksForNothing) {
+  SceneState state = test_scene(TestScene::study, 150, 110);
+  const char* pointer = "/materials/Matte/pbrMetallicRoughness/baseColorFactor";
+  const std::vector<ParameterSet> chosen{parameters_at(state, pointer)};
+  Image image = preprocessed(state.scene(), {1, 5, 0});
+  Replayer replayer(std::move(state), std::move(image));
+  replayer.choose_parameters(chosen);
+  const std::uint64_t kept = replayer.resident().color_trees;
+  const StepResult first = replayer.step(replace_edit(pointer, {0.1, 0.2, 0.3, 1}), "recolor", ".");
+  EXPECT_EQ(first.counters.by_groups.visited, 0U);
+  EXPECT_GT(first.counters.samples_affected, 0U);
+  const StepResult other = replayer.step(replace_edit("/lights/Lamp/color", {0.5, 1, 1}), "recolor", ".");
+  EXPECT_GT(other.counters.by_groups.visited, 0U);
+  EXPECT_LE(replayer.resident().color_trees, kept) << "no trees of a light that was not chosen";
 }
 
 TEST(RecolorCost, NoMoreColorTreesAreKeptThanAllowed) {

@@ -17,6 +17,9 @@ struct ParameterSet {
   /// The fields of a material that are in the set.
   [[nodiscard]] FieldMask fields_of(MaterialId material) const;
   [[nodiscard]] bool has(LightId light) const;
+  /// Are all of `others` in the set?
+  [[nodiscard]] bool contains(const ParameterSet& others) const;
+  void add(const ParameterSet& others);
   /// Does a program read any of them?
   [[nodiscard]] bool reaches(const BoundProgram& bound) const {
     return reaches(bound.material, bound.program->dependencies);

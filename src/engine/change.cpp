@@ -143,6 +143,12 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
   return change;
 }
 
+bool is_compressible(const ColorChange& change) {
+  return change.reassigned.empty() && std::ranges::none_of(change.parameters.materials, [](const auto& material) {
+           return (material.second & kMappingMask) != 0;
+         });
+}
+
 std::vector<ObjectId> selection_of(const StepChange& change) {
   std::vector<ObjectId> selection;
   for (std::uint32_t i = 0; i < change.rays.objects.size(); ++i)

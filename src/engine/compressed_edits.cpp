@@ -25,6 +25,12 @@ bool is_outdated(const CompressedTile& tile, const ColorChange& change) {
 
 bool CompressedImage::is_valid() const { return std::ranges::all_of(tiles, &CompressedTile::is_valid); }
 
+const ParameterSet* CompressedEdits::set_for(const ParameterSet& changed) const {
+  if (!chosen_) return &changed;
+  const auto found = std::ranges::find_if(*chosen_, [&](const ParameterSet& set) { return set.contains(changed); });
+  return found != chosen_->end() ? &*found : nullptr;
+}
+
 CompressedImage& CompressedEdits::of(const ParameterSet& parameters) {
   auto found = std::ranges::find_if(images_, [&](const auto& image) { return image->parameters == parameters; });
   if (found == images_.end()) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cache/residency.h"
@@ -42,6 +43,10 @@ class CompressedEdits {
   CompressedEdits(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
 
   [[nodiscard]] std::uint64_t most_samples() const { return most_samples_; }
+  /// Only trees of these sets are kept from now on.
+  void choose(std::vector<ParameterSet> sets) { chosen_ = std::move(sets); }
+  /// The set whose trees an edit of `changed` is to use; null: none, it goes through the ray trees.
+  [[nodiscard]] const ParameterSet* set_for(const ParameterSet& changed) const;
   /// What is kept for the parameters, perhaps nothing yet. Valid until trim().
   [[nodiscard]] CompressedImage& of(const ParameterSet& parameters);
 
@@ -73,6 +78,7 @@ class CompressedEdits {
   std::uint64_t most_samples_, step_ = 0;
   std::atomic<std::uint64_t> bytes_ = 0;
   std::vector<std::unique_ptr<CompressedImage>> images_;
+  std::optional<std::vector<ParameterSet>> chosen_;  // none: any set may be kept
   const CompressedImage* at_work_ = nullptr;
 };
 

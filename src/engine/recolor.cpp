@@ -97,12 +97,6 @@ class Room {
 
 }  // namespace
 
-bool is_compressible(const ColorChange& change) {
-  return change.reassigned.empty() && std::ranges::none_of(change.parameters.materials, [](const auto& material) {
-           return (material.second & kMappingMask) != 0;
-         });
-}
-
 /// What invalid tiles are built from; empty if there are none.
 struct Recolorer::Search {
   PathTasks tasks;
@@ -120,7 +114,7 @@ Recolorer::Search Recolorer::search(const StepChange& change, const CompressedIm
   return search;
 }
 
-void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch& watch) {
+void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch) {
   CompressedImage& kept = compressed_.of(change.colors.parameters);
   const std::vector<Leaves>* known_leaves = selection_.leaves(change);
   Search found = search(change, kept, result, watch);
@@ -160,8 +154,10 @@ void Recolorer::recolor(const StepChange& change, StepResult& result, StopWatch&
       compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
       grown[i] = compressor.counters();
     }
-    const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
-    changed[i] = recolor_tile(tile, tiles[i], rays_.scene(), stored_, *memory);
+    if (evaluates) {
+      const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
+      changed[i] = recolor_tile(tile, tiles[i], rays_.scene(), stored_, *memory);
+    }
     samples[i] = tile.samples.size();
     result.dependent[tiles[i]] = tile.leaves;
     if (!room.take(samples[i]) || !stored_.residency().make_room(0))

@@ -10,9 +10,6 @@
 
 namespace relook {
 
-/// True if compressed trees can follow the change.
-[[nodiscard]] bool is_compressible(const ColorChange& change);
-
 /// Works on the parts of a replay, which outlive it.
 class Recolorer {
  public:
@@ -25,14 +22,21 @@ class Recolorer {
         selection_(selection),
         compressed_(compressed) {}
 
-  /// Compresses what depends on the changed parameters, unless it is already, and evaluates it. Requires:
+  /// Compresses what depends on the parameters of `change`, unless it is already, and evaluates it. Requires:
   /// is_compressible(change.colors); no tree is touched; nothing is shown on top of the image.
-  void recolor(const StepChange& change, StepResult& result, StopWatch& watch);
+  void recolor(const StepChange& change, StepResult& result, StopWatch& watch) { run(change, true, result, watch); }
+  /// The same without evaluating it, for edits to come.
+  void compress(const StepChange& change) {
+    StepResult result;
+    StopWatch watch;
+    run(change, false, result, watch);
+  }
 
  private:
   struct Search;
   [[nodiscard]] Search search(const StepChange& change, const CompressedImage& kept, StepResult& result,
                               StopWatch& watch);
+  void run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch);
 
   StoredImage& stored_;
   const RayScene& rays_;

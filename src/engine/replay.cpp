@@ -242,16 +242,34 @@ struct Replayer::Impl {
     for (std::size_t i = 0; i < tiles.size(); ++i) result.changed_pixels.add(tiles[i], changed[i]);
   }
 
+  /// The parameters whose colour trees an edit of colours is to use; null: none.
+  [[nodiscard]] const ParameterSet* set_to_keep(const ColorChange& colors) const {
+    if (compressed.most_samples() == 0 || !is_compressible(colors)) return nullptr;
+    return compressed.set_for(colors.parameters);
+  }
+
+  void choose_parameters(const std::vector<ParameterSet>& sets) {
+    compressed.choose(sets);
+    for (const ParameterSet& set : sets) {
+      if (compressed.most_samples() == 0) return;
+      StepChange change = no_change();
+      change.colors.parameters = set;
+      recolorer.compress(change);
+    }
+  }
+
   /// Brings trees, colours and frame up to date with the scene, where `also_shown` was seen on top so far; finish()
   /// follows.
   void update(StepChange& change, StepResult& result, StopWatch& watch,
               const std::vector<ShownSamples>& also_shown = {}) {
-    if (!change.touches_rays() && compressed.most_samples() > 0 && is_compressible(change.colors) &&
-        also_shown.empty()) {
-      if (!change.colors.empty()) recolorer.recolor(change, result, watch);
-      return;
+    if (!change.touches_rays() && also_shown.empty()) {
+      if (change.colors.empty()) return;
+      if (const ParameterSet* set = set_to_keep(change.colors)) {
+        change.colors.parameters = *set;
+        recolorer.recolor(change, result, watch);
+        return;
+      }
     }
-    if (!change.touches_rays() && change.colors.empty() && also_shown.empty()) return;
     const std::vector<TileUpdate> updates = run(change, {}, true, result, watch);
     keep_trees(updates, change);
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
@@ -287,12 +305,16 @@ struct Replayer::Impl {
     change.any_moved = true;
     change.any_shadows = true;
   }
-  /// A change that does nothing else.
-  [[nodiscard]] StepChange put_back() const {
+  [[nodiscard]] StepChange no_change() const {
     StepChange change;
     RayChange& r = change.rays;
     r.old_lights = stored.lights();
     for (std::uint32_t i = 0; i < stored.lights().size(); ++i) r.old_light_index.push_back(i);
+    return change;
+  }
+  /// A change that does nothing else.
+  [[nodiscard]] StepChange put_back() const {
+    StepChange change = no_change();
     put_back_with(change);
     return change;
   }
@@ -402,6 +424,7 @@ Resident Replayer::resident() const {
   return resident;
 }
 
+void Replayer::choose_parameters(const std::vector<ParameterSet>& sets) { impl_->choose_parameters(sets); }
 StepResult Replayer::step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
   return impl_->step(edit, file, folder);
 }

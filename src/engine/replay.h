@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cache/residency.h"
+#include "color/parameter_set.h"
 #include "engine/image.h"
 #include "engine/regions.h"
 #include "engine/step_result.h"
@@ -31,6 +32,10 @@ class Replayer {
   /// Groups, and tunnels once a step has needed them.
   [[nodiscard]] const ImageRegions& regions() const;
   [[nodiscard]] const Residency& residency() const;
+
+  /// From now on colour trees are kept for these sets of parameters alone, and before a step changes them (paper
+  /// 4.1.1): an edit within one set runs its residuals; any other colour edit goes through the ray trees.
+  void choose_parameters(const std::vector<ParameterSet>& sets);
 
   /// Applies one edit. Throws InputError with everything as before. Not during a drag.
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder);

@@ -116,6 +116,7 @@ Json options_json(const RunReport& report) {
           {"tunnels", structures.tunnels},
           {"groups", structures.groups},
           {"atoms", structures.atoms},
+          {"params", structures.params},
           {"shadow_bits", report.view.shadow_bits},
           {"float", report.float_frames},
           {"aovs", report.layers},

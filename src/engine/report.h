@@ -55,6 +55,7 @@ struct StructureOptions {
   std::optional<std::uint64_t> disk_bytes;  // of the spill file
   double ray_trees_percent = 100, color_trees_percent = 100;
   std::uint32_t tunnels = 1, groups = 4, atoms = 0;
+  std::vector<std::string> params;  // pointers to parameters that are subject to change; empty: any may be
 };
 
 struct CacheSizes {
