@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "cache/residency.h"
-#include "color/parameter_set.h"
 #include "engine/image.h"
 #include "engine/regions.h"
 #include "engine/step_result.h"
 #include "scene/state.h"
 
 namespace relook {
+
+struct ParameterSet;
 
 class Replayer {
  public:
