@@ -2,6 +2,7 @@
 // nodes place.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/hash.h"
 #include "scene/compile_scene.h"
@@ -30,56 +31,59 @@ Direction unit_direction(const Imath::V3d& v, double length) {
 
 NodeRecord& Compilation::editable_record(const std::string& node) {
   const auto [record, is_new] = index_.nodes.try_emplace(node);
-  if (!old_nodes_.contains(node)) {
-    if (is_new)
-      old_nodes_.emplace(node, std::nullopt);
-    else
-      old_nodes_.emplace(node, record->second);
-  }
+  if (!is_new)
+    note(node, record->second);
+  else if (history_ == History::noted)
+    old_nodes_.try_emplace(node, std::nullopt);
   return record->second;
 }
 
-void Compilation::update_nodes(const Entities& entities, const std::vector<TouchedEntity>& touched) {
-  for (const TouchedEntity& entity : touched)
-    if (entity.section == "nodes") unlink_children(entity.name);
-  for (const TouchedEntity& entity : touched)
-    if (entity.section == "nodes" && value_of(entity) != nullptr) link_children(entity.name);
-  for (const TouchedEntity& entity : entities)
-    if (entity.section == "nodes") starts_.insert(entity.name);
-  for (const TouchedEntity& entity : touched)
-    if (entity.section == "nodes" && value_of(entity) == nullptr) forget_node(entity.name);
-  for (const std::string& top : by_depth()) visit_subtree(top);
+/// Before the first change of a node that was there.
+void Compilation::note(const std::string& node, const NodeRecord& record) {
+  if (history_ == History::noted) old_nodes_.try_emplace(node, record);
+}
+
+void Compilation::update_nodes(const Entities& entities) {
+  const auto is_touched_node = [](const Entity& entity) {
+    return entity.is_touched && entity.place.section == "nodes";
+  };
+  for (const Entity& entity : entities)
+    if (is_touched_node(entity)) unlink_children(entity.place);
+  for (const Entity& entity : entities)
+    if (is_touched_node(entity) && entity.value != nullptr) link_children(entity);
+  for (const Entity& entity : entities)
+    if (is_touched_node(entity) && entity.value == nullptr) forget_node(entity.place.name);
+  for (const NodeVisit& visit : visits(entities)) visit_subtree(visit);
   update_light_order();
 }
 
-void Compilation::unlink_children(const std::string& node) {
-  const auto references = index_.references.find({"nodes", node});
+void Compilation::unlink_children(const TouchedEntity& node) {
+  const auto references = index_.references.find(node);
   if (references == index_.references.end()) return;
   for (const TouchedEntity& child : references->second) {
     if (child.section != "nodes" || !index_.nodes.contains(child.name)) continue;
     editable_record(child.name).parent.clear();
-    starts_.insert(child.name);
+    adopted_.push_back(child.name);
   }
 }
 
-void Compilation::link_children(const std::string& node) {
-  const Json& value = document_.look["nodes"][node];
-  (void)editable_record(node);
-  const auto children = value.find("children");
-  if (children == value.end()) return;
+void Compilation::link_children(const Entity& node) {
+  const std::string& name = node.place.name;
+  (void)editable_record(name);
+  const auto children = node.value->find("children");
+  if (children == node.value->end()) return;
   for (std::size_t i = 0; i < children->size(); ++i) {
     const auto& child = (*children)[i].get_ref<const std::string&>();
     NodeRecord& record = editable_record(child);
     if (!record.parent.empty())
-      fail(node_pointer(node) + "/children/" + std::to_string(i),
+      fail(node_pointer(name) + "/children/" + std::to_string(i),
            "node \"" + child + "\" is already a child of \"" + record.parent + "\"");
-    record.parent = node;
-    starts_.insert(child);
+    record.parent = name;
+    adopted_.push_back(child);
   }
 }
 
 void Compilation::forget_node(const std::string& node) {
-  starts_.erase(node);
   const auto found = index_.nodes.find(node);
   if (found == index_.nodes.end()) return;
   NodeRecord& record = editable_record(node);
@@ -96,47 +100,74 @@ void Compilation::forget_node(const std::string& node) {
   index_.nodes.erase(found);
 }
 
-/// The starts, parents before children. Fails on a node that is its own ancestor.
-std::vector<std::string> Compilation::by_depth() {
-  std::unordered_map<std::string, std::size_t> depths;  // 0: on the way up
-  for (const std::string& start : starts_) {
-    std::vector<std::string> path;
+/// The nodes to start from, parents before children. Fails on a node that is its own ancestor.
+std::vector<Compilation::NodeVisit> Compilation::visits(const Entities& entities) {
+  std::vector<NodeVisit> visits;
+  // `value`: null if it is still to be found.
+  const auto add = [&](const std::string& name, const Json* value) {
+    const auto node = index_.nodes.find(name);
+    if (node == index_.nodes.end() || std::exchange(node->second.last_start, index_.runs) == index_.runs) return;
+    if (value == nullptr) value = value_of({"nodes", name});
+    if (value != nullptr) visits.push_back({&*node, value});
+  };
+  for (const Entity& entity : entities)
+    if (entity.place.section == "nodes" && entity.value != nullptr) add(entity.place.name, entity.value);
+  const auto adopted = static_cast<std::ptrdiff_t>(visits.size());
+  for (const std::string& name : adopted_) add(name, nullptr);
+  const auto name_of = [](const NodeVisit& visit) -> const std::string& { return visit.node->first; };
+  std::ranges::sort(visits.begin() + adopted, visits.end(), {}, name_of);
+  std::ranges::inplace_merge(visits, visits.begin() + adopted, {}, name_of);
+  find_depths(visits);
+  std::ranges::stable_sort(visits, {}, &NodeVisit::depth);
+  return visits;
+}
+
+void Compilation::find_depths(std::vector<NodeVisit>& visits) const {
+  std::unordered_map<const NodeRecord*, std::size_t> depths;  // 0: on the way up
+  std::vector<const NodeRecord*> path;
+  for (NodeVisit& visit : visits) {
+    path.clear();
     std::size_t depth = 0;
-    for (std::string at = start; !at.empty(); at = index_.nodes.at(at).parent) {
-      const auto [known, is_new] = depths.try_emplace(at, 0);
-      if (!is_new && known->second == 0) fail(node_pointer(at) + "/children", "the node is its own ancestor");
+    if (visit.node->second.parent.empty()) {
+      visit.depth = 1;
+      continue;
+    }
+    for (const auto* at = visit.node; at != nullptr;) {
+      const auto [known, is_new] = depths.try_emplace(&at->second, 0);
+      if (!is_new && known->second == 0) fail(node_pointer(at->first) + "/children", "the node is its own ancestor");
       if (!is_new) {
         depth = known->second;
         break;
       }
-      path.push_back(at);
+      path.push_back(&at->second);
+      at = at->second.parent.empty() ? nullptr : &*index_.nodes.find(at->second.parent);
     }
     for (auto at = path.rbegin(); at != path.rend(); ++at) depths[*at] = ++depth;
+    visit.depth = depth;
   }
-  std::vector<std::string> ordered(starts_.begin(), starts_.end());
-  std::stable_sort(ordered.begin(), ordered.end(),
-                   [&](const std::string& a, const std::string& b) { return depths[a] < depths[b]; });
-  return ordered;
 }
 
-void Compilation::visit_subtree(const std::string& top) {
+void Compilation::visit_subtree(const NodeVisit& top) {
   const Json& nodes = document_.look["nodes"];
-  std::vector<std::string> todo{top};
+  std::vector<NodeVisit> todo{top};
   while (!todo.empty()) {
-    const std::string name = std::move(todo.back());
+    const NodeVisit visit = todo.back();
     todo.pop_back();
-    if (!visited_.insert(name).second) continue;
-    const Json& node = nodes[name];
-    if (!visit_node(name, node)) continue;
-    const auto children = node.find("children");
-    if (children == node.end()) continue;
-    for (const Json& child : *children) todo.push_back(child.get<std::string>());
+    auto& [name, record] = *visit.node;
+    if (record.last_visit == index_.runs) continue;
+    if (!visit_node(name, *visit.value, record)) continue;
+    const auto children = visit.value->find("children");
+    if (children == visit.value->end()) continue;
+    for (const Json& child : *children) {
+      const auto& child_name = child.get_ref<const std::string&>();
+      todo.push_back({&*index_.nodes.find(child_name), &nodes[child_name]});
+    }
   }
 }
 
 /// Compiles one node. True if its children must follow: it moved, appeared or disappeared.
-bool Compilation::visit_node(const std::string& name, const Json& node) {
-  NodeRecord& record = editable_record(name);
+bool Compilation::visit_node(const std::string& name, const Json& node, NodeRecord& record) {
+  note(name, record);
   WideTransform world = local_transform(node, context_.file, node_pointer(name));
   bool visible = is_shown(node);
   if (!record.parent.empty()) {
@@ -149,6 +180,7 @@ bool Compilation::visit_node(const std::string& name, const Json& node) {
   record.world = world;
   record.visible = visible;
   record.is_compiled = true;
+  record.last_visit = index_.runs;
   update_objects(name, node, record);
   update_light(name, node, record);
   return is_changed;
@@ -228,7 +260,7 @@ ObjectId Compilation::object_slot(const std::string& node, std::uint32_t primiti
 void Compilation::set_object(ObjectId id, Object value) {
   Object& now = scene_.objects[id.index()];
   if (now == value) return;
-  old_objects_.try_emplace(id, now);
+  if (history_ == History::noted) old_objects_.try_emplace(id, now);
   now = std::move(value);
 }
 

@@ -1,5 +1,7 @@
 #include "scene/compile_scene.h"
 
+#include <algorithm>
+
 #include "scene/look_names.h"
 #include "scene/look_schema.h"
 
@@ -21,35 +23,49 @@ bool reaches_users(const std::string& section) { return section != "materials" &
 
 }  // namespace
 
-std::vector<TouchedEntity> all_entities(const LookDocument& document) {
-  std::vector<TouchedEntity> entities;
-  for (std::size_t s = 0; s < kSectionCount; ++s) {
-    const std::string section(section_name(static_cast<Section>(s)));
-    for (const auto& item : document.look.at(section).items()) entities.push_back({section, item.key()});
+std::vector<CompiledEntity> all_entities(const LookDocument& document) {
+  std::vector<CompiledEntity> entities;
+  for (const auto& part : document.look.items()) {
+    if (!section_of(part.key())) {
+      entities.push_back({{part.key(), ""}, &part.value(), true});
+      continue;
+    }
+    for (const auto& item : part.value().items()) entities.push_back({{part.key(), item.key()}, &item.value(), true});
   }
-  entities.push_back({"scene", ""});
-  if (document.look.contains("extensions")) entities.push_back({"extensions", ""});
   return entities;
 }
 
 SceneDelta Compilation::run(const std::vector<TouchedEntity>& touched) {
+  check_root();
+  for (const TouchedEntity& entity : touched) check_name(entity);
+  return compile(with_users(touched));
+}
+
+SceneDelta Compilation::run(const std::vector<CompiledEntity>& entities) {
+  require(std::ranges::is_sorted(entities, {}, &Entity::place), "entities come in the order of their places");
+  check_root();
+  for (const Entity& entity : entities) check_name(entity.place);
+  return compile(entities);
+}
+
+SceneDelta Compilation::compile(const Entities& entities) {
   old_order_ = scene_.light_order;
+  ++index_.runs;
   try {
-    check_root();
-    for (const TouchedEntity& entity : touched) check_name(entity);
-    const Entities entities = with_users(touched);
-    for (const TouchedEntity& entity : entities) check_entity(entity);
-    for (const TouchedEntity& entity : touched)
-      if (entity.section == "extensions") check_variants();
-    for (const TouchedEntity& entity : entities)
-      if (entity.section == "materials" && value_of(entity) != nullptr) update_material(entity.name);
-    if (entities.contains({"scene", ""})) update_scene_entry();
-    update_nodes(entities, touched);
-    for (const TouchedEntity& entity : touched) update_references(entity);
+    for (const Entity& entity : entities) check_entity(entity);
+    for (const Entity& entity : entities)
+      if (entity.is_touched && entity.place.section == "extensions") check_variants();
+    for (const Entity& entity : entities) {
+      if (entity.place.section == "materials" && entity.value != nullptr) update_material(entity);
+      if (entity.place.section == "scene") update_scene_entry();
+    }
+    update_nodes(entities);
+    for (const Entity& entity : entities)
+      if (entity.is_touched) update_references(entity);
     check_camera();
     return delta();
   } catch (...) {
-    roll_back();
+    if (history_ == History::noted) roll_back();
     throw;
   }
 }
@@ -87,29 +103,32 @@ const Json* Compilation::value_of(const TouchedEntity& entity) const {
 }
 
 Compilation::Entities Compilation::with_users(const std::vector<TouchedEntity>& touched) const {
-  Entities entities(touched.begin(), touched.end());
-  std::vector<TouchedEntity> todo(entities.begin(), entities.end());
-  while (!todo.empty()) {
-    const TouchedEntity entity = std::move(todo.back());
-    todo.pop_back();
+  Entities entities;
+  entities.reserve(touched.size());
+  for (const TouchedEntity& entity : touched) entities.push_back({entity, value_of(entity), true});
+  std::unordered_set<TouchedEntity, TouchedEntityHash> known;
+  if (!index_.users.empty()) known.insert(touched.begin(), touched.end());
+  for (std::size_t i = 0; i < entities.size(); ++i) {
     // Users of what was removed are checked again and found to refer to nothing.
-    if (!reaches_users(entity.section) && value_of(entity) != nullptr) continue;
-    const auto users = index_.users.find(entity);
+    if (!reaches_users(entities[i].place.section) && entities[i].value != nullptr) continue;
+    const auto users = index_.users.find(entities[i].place);
     if (users == index_.users.end()) continue;
     for (const TouchedEntity& user : users->second)
-      if (entities.insert(user).second) todo.push_back(user);
+      if (known.insert(user).second) entities.push_back({user, value_of(user), false});
   }
+  std::ranges::sort(entities, {}, &Entity::place);
+  entities.erase(std::ranges::unique(entities, {}, &Entity::place).begin(), entities.end());
   return entities;
 }
 
-void Compilation::check_entity(const TouchedEntity& entity) const {
-  const Json* value = value_of(entity);
+void Compilation::check_entity(const Entity& entity) const {
+  const Json* value = entity.value;
   if (value == nullptr) return;
-  const std::string pointer = pointer_of(entity);
-  check_against_schema(schema_of_entity(entity), *value, document_, context_.file, pointer);
-  const std::optional<Section> section = section_of(entity.section);
+  const std::string pointer = pointer_of(entity.place);
+  check_against_schema(schema_of_entity(entity.place), *value, document_, context_.file, pointer);
+  const std::optional<Section> section = section_of(entity.place.section);
   if (!section) return;
-  if (*section == Section::lights) (void)compile_light(context_, entity.name, *value, pointer);
+  if (*section == Section::lights) (void)compile_light(context_, entity.place.name, *value, pointer);
   if (*section == Section::images || *section == Section::samplers)
     check_texture_entity(context_, *section, *value, pointer);
   if (*section != Section::meshes) return;
@@ -129,34 +148,39 @@ void Compilation::check_variants() const {
                          "/meshes/" + escape_token(mesh.key()));
 }
 
-void Compilation::update_references(const TouchedEntity& entity) {
+void Compilation::update_references(const Entity& entity) {
   std::vector<TouchedEntity> references;
-  if (const Json* value = value_of(entity))
-    visit_names(schema_of_entity(entity), *value, [&](Target target, const Json& name) {
+  if (entity.value != nullptr)
+    visit_names(schema_of_entity(entity.place), *entity.value, [&](Target target, const Json& name) {
       if (target == Target::cameras || target == Target::variants) return;
       references.push_back({std::string(section_name(static_cast<Section>(target))), name.get<std::string>()});
     });
-  const auto old = index_.references.find(entity);
-  old_references_.try_emplace(entity, old == index_.references.end() ? std::vector<TouchedEntity>() : old->second);
-  set_references(entity, std::move(references));
+  if (history_ == History::noted) {
+    const auto old = index_.references.find(entity.place);
+    old_references_.try_emplace(entity.place,
+                                old == index_.references.end() ? std::vector<TouchedEntity>() : old->second);
+  }
+  set_references(entity.place, std::move(references));
 }
 
 void Compilation::set_references(const TouchedEntity& entity, std::vector<TouchedEntity> references) {
-  std::vector<TouchedEntity>& slot = index_.references[entity];
-  for (const TouchedEntity& old : slot) {
-    const auto users = index_.users.find(old);
-    if (users == index_.users.end()) continue;
-    users->second.erase(entity);
-    if (users->second.empty()) index_.users.erase(users);
+  if (const auto old = index_.references.find(entity); old != index_.references.end()) {
+    for (const TouchedEntity& before : old->second) {
+      const auto users = index_.users.find(before);
+      if (users == index_.users.end()) continue;
+      users->second.erase(entity);
+      if (users->second.empty()) index_.users.erase(users);
+    }
+    index_.references.erase(old);
   }
+  if (references.empty()) return;
   for (const TouchedEntity& now : references) index_.users[now].insert(entity);
-  slot = std::move(references);
-  if (slot.empty()) index_.references.erase(entity);
+  index_.references.emplace(entity, std::move(references));
 }
 
-void Compilation::update_material(const std::string& name) {
-  const TouchedEntity entity{"materials", name};
-  Material material = compile_material(context_, name, *value_of(entity), pointer_of(entity));
+void Compilation::update_material(const Entity& entity) {
+  const std::string& name = entity.place.name;
+  Material material = compile_material(context_, name, *entity.value, pointer_of(entity.place));
   const auto [slot, is_new] =
       index_.materials.try_emplace(name, MaterialId(static_cast<std::uint32_t>(scene_.materials.size())));
   if (is_new) {

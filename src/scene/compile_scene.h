@@ -1,11 +1,12 @@
 // One compilation step of a scene: from the entries of the look document that were touched to the tables that depend on
 // them, along the references between entries. All or nothing; its cost follows what was touched and its users.
 #pragma once
+#include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "scene/compile_material.h"
@@ -18,61 +19,90 @@ namespace relook {
 struct NodeRecord {
   std::string parent;  // "" for roots
   WideTransform world;
-  bool visible = true;            // itself and all its ancestors
-  bool is_compiled = false;       // false until its first visit
-  std::vector<ObjectId> objects;  // of its mesh
+  bool visible = true;                           // itself and all its ancestors
+  bool is_compiled = false;                      // false until its first visit
+  std::uint64_t last_start = 0, last_visit = 0;  // SceneIndex::runs when a visit started from it, and when one came by
+  std::vector<ObjectId> objects;                 // of its mesh
   LightId light;
+};
+
+struct TouchedEntityHash {
+  std::size_t operator()(const TouchedEntity& entity) const {
+    return std::hash<std::string>()(entity.section) * 31 + std::hash<std::string>()(entity.name);
+  }
 };
 
 /// Names to slots, and who refers to whom. Slots of entities that were removed stay for their return.
 struct SceneIndex {
+  std::uint64_t runs = 0;  // compilations so far
   std::unordered_map<std::string, NodeRecord> nodes;
   std::unordered_map<std::string, MaterialId> materials;
   MaterialId default_material;                          // of primitives without a material
   std::unordered_map<std::uint64_t, ObjectId> objects;  // by key
   std::unordered_map<std::string, LightId> lights;      // by node
-  std::map<TouchedEntity, std::vector<TouchedEntity>> references;
-  std::map<TouchedEntity, std::set<TouchedEntity>> users;
+  std::unordered_map<TouchedEntity, std::vector<TouchedEntity>, TouchedEntityHash> references;
+  std::unordered_map<TouchedEntity, std::unordered_set<TouchedEntity, TouchedEntityHash>, TouchedEntityHash> users;
 };
 
-/// Every entity of the document, for a compilation from scratch.
-[[nodiscard]] std::vector<TouchedEntity> all_entities(const LookDocument& document);
+/// An entry of the look document to compile.
+struct CompiledEntity {
+  TouchedEntity place;
+  const Json* value = nullptr;  // null: removed
+  bool is_touched = false;      // itself, not only what it refers to
+};
+
+/// Every entity of the document in the order of their places, for a compilation from scratch.
+[[nodiscard]] std::vector<CompiledEntity> all_entities(const LookDocument& document);
+
+/// Whether a compilation notes what was there before. One from scratch need not: an error ends its scene.
+enum class History : std::uint8_t { noted, none };
 
 class Compilation {
  public:
   Compilation(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index,
-              std::string_view file)
-      : document_(document), scene_(scene), index_(index), context_{document, pyramids, file} {}
+              std::string_view file, History history = History::noted)
+      : document_(document), scene_(scene), index_(index), context_{document, pyramids, file}, history_(history) {}
 
-  /// Throws InputError with scene and index as before.
+  /// What was touched and its users. Throws InputError with scene and index as before.
   SceneDelta run(const std::vector<TouchedEntity>& touched);
+  /// Entities of increasing places, without users as yet. Without history, an error leaves scene and index unfinished,
+  /// and no delta is known.
+  SceneDelta run(const std::vector<CompiledEntity>& entities);
 
  private:
-  using Entities = std::set<TouchedEntity>;
+  using Entity = CompiledEntity;
+  using Entities = std::vector<Entity>;  // increasing places
+  struct NodeVisit {
+    std::pair<const std::string, NodeRecord>* node = nullptr;  // of the index
+    const Json* value = nullptr;
+    std::size_t depth = 0;  // 1: a root
+  };
 
   // compile_scene.cpp
   void check_root() const;
   void check_name(const TouchedEntity& entity) const;
+  SceneDelta compile(const Entities& entities);
   [[nodiscard]] Entities with_users(const std::vector<TouchedEntity>& touched) const;
   [[nodiscard]] const Json* value_of(const TouchedEntity& entity) const;
-  void check_entity(const TouchedEntity& entity) const;
+  void check_entity(const Entity& entity) const;
   void check_variants() const;
-  void update_references(const TouchedEntity& entity);
+  void update_references(const Entity& entity);
   void set_references(const TouchedEntity& entity, std::vector<TouchedEntity> references);
-  void update_material(const std::string& name);
+  void update_material(const Entity& entity);
   void update_scene_entry();
   [[nodiscard]] SceneDelta delta();
   void roll_back();
   [[noreturn]] void fail(const std::string& pointer, const std::string& what) const;
 
   // compile_nodes.cpp
-  void update_nodes(const Entities& entities, const std::vector<TouchedEntity>& touched);
-  void unlink_children(const std::string& node);
-  void link_children(const std::string& node);
+  void update_nodes(const Entities& entities);
+  void unlink_children(const TouchedEntity& node);
+  void link_children(const Entity& node);
   void forget_node(const std::string& node);
-  [[nodiscard]] std::vector<std::string> by_depth();
-  void visit_subtree(const std::string& top);
-  bool visit_node(const std::string& name, const Json& node);
+  [[nodiscard]] std::vector<NodeVisit> visits(const Entities& entities);
+  void find_depths(std::vector<NodeVisit>& visits) const;
+  void visit_subtree(const NodeVisit& top);
+  bool visit_node(const std::string& name, const Json& node, NodeRecord& record);
   [[nodiscard]] const std::vector<Transform>* instances_of(const std::string& name, const Json& node) const;
   void update_objects(const std::string& name, const Json& node, NodeRecord& record);
   void update_light(const std::string& name, const Json& node, NodeRecord& record);
@@ -82,14 +112,15 @@ class Compilation {
   void update_light_order();
   void check_camera() const;
   NodeRecord& editable_record(const std::string& node);
+  void note(const std::string& node, const NodeRecord& record);
 
   const LookDocument& document_;
   Scene& scene_;
   SceneIndex& index_;
   CompileContext context_;
+  History history_;
 
-  std::set<std::string> starts_;  // nodes to visit, with the subtrees that move with them
-  std::set<std::string> visited_;
+  std::vector<std::string> adopted_;  // nodes with another parent than before
   // What was there before, for the delta and for rolling back.
   std::map<TouchedEntity, std::vector<TouchedEntity>> old_references_;
   std::unordered_map<std::string, std::optional<NodeRecord>> old_nodes_;

@@ -14,6 +14,7 @@
 
 namespace relook {
 
+/// From `name` on: kinds that are names or may have names inside.
 enum class FieldKind : std::uint8_t { number, integer, boolean, text, texts, reals, choice, name, names, object, list };
 
 /// What a name refers to; the first are those of Section, in its order.

@@ -27,6 +27,7 @@ template <class Value, class Visit>
 void walk_names(const Schema& schema, Value& value, const Visit& visit) {
   if (!value.is_object()) return;
   for (const Field& field : schema.fields) {
+    if (field.kind < FieldKind::name) continue;
     const auto found = value.find(field.key);
     if (found == value.end()) continue;
     Value& member = *found;

@@ -25,13 +25,17 @@ SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<Pyr
   // The default material comes after those of the document.
   const std::size_t count = document_.look.at("materials").size();
   index_->default_material = MaterialId(static_cast<std::uint32_t>(count));
-  Compilation compilation(document_, *pyramids_, scene_, *index_, document_.file);
-  std::vector<TouchedEntity> materials, others;
-  for (TouchedEntity& entity : all_entities(document_))
-    (entity.section == "materials" ? materials : others).push_back(std::move(entity));
-  (void)compilation.run(materials);
+  const std::size_t nodes = document_.look.at("nodes").size();
+  index_->nodes.reserve(nodes);
+  index_->objects.reserve(nodes);
+  index_->references.reserve(nodes);
+  scene_.objects.reserve(nodes);  // one a node, most often
+  std::vector<CompiledEntity> materials, others;
+  for (CompiledEntity& entity : all_entities(document_))
+    (entity.place.section == "materials" ? materials : others).push_back(std::move(entity));
+  (void)Compilation(document_, *pyramids_, scene_, *index_, document_.file, History::none).run(materials);
   scene_.materials.emplace_back();
-  (void)Compilation(document_, *pyramids_, scene_, *index_, document_.file).run(others);
+  (void)Compilation(document_, *pyramids_, scene_, *index_, document_.file, History::none).run(others);
 }
 
 std::string SceneState::parent_of(std::string_view node) const {
