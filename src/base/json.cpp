@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kDeepest = 64;
 constexpr std::size_t kMostValues = 16'000'000;
+constexpr std::size_t kUsualItems = 4;  // of an array: a vector, a colour
 
 /// The parser's message without its prefix and with a bounded quotation of the text.
 std::string parse_message(std::string_view message) {
@@ -45,7 +46,9 @@ class Builder : public nlohmann::json_sax<Json> {
 
   bool key(string_t& name) override {
     keys_.back() = std::move(name);
-    if (stack_.back()->contains(keys_.back())) fail("this key appears twice");
+    const auto& members = stack_.back()->get_ref<const Json::object_t&>();
+    const bool is_last = members.empty() || members.rbegin()->first < keys_.back();  // as in all that is written sorted
+    if (!is_last && members.contains(keys_.back())) fail("this key appears twice");
     return true;
   }
 
@@ -76,9 +79,13 @@ class Builder : public nlohmann::json_sax<Json> {
       return &root_;
     }
     Json& parent = *stack_.back();
-    if (parent.is_object()) return &(parent[keys_.back()] = std::move(value));
-    parent.push_back(std::move(value));
-    return &parent.back();
+    if (parent.is_object()) {
+      auto& members = parent.get_ref<Json::object_t&>();
+      return &members.emplace_hint(members.end(), keys_.back(), std::move(value))->second;
+    }
+    auto& items = parent.get_ref<Json::array_t&>();
+    if (items.empty()) items.reserve(kUsualItems);
+    return &items.emplace_back(std::move(value));
   }
   /// At the value being read.
   [[noreturn]] void fail(std::string_view what) const {
