@@ -57,15 +57,13 @@ void print_paths(const std::vector<std::string>& paths, Console& console) {
 
 /// A cache's image as it was rendered, with the pixel's history from there.
 std::unique_ptr<PixelHistory> open_pixel(const RunSource& source, std::uint32_t x, std::uint32_t y) {
-  CacheContent content = load_mended_cache(source.cache).content;
-  if (content.scene_hash != source.scene_hash) require_sound({CacheFault::other_scene, "", ""}, source.cache);
-  if (x >= content.camera.width || y >= content.camera.height)
-    throw UsageError("PIXEL: the image is " + std::to_string(content.camera.width) + "x" +
-                     std::to_string(content.camera.height) + " pixels");
-  RestoredImage restored;
-  require_sound(restore_image(std::move(content), restored), source.cache);
-  const Frame& frame = restored.image.frame;
-  auto history = std::make_unique<PixelHistory>(std::move(*restored.state), restored.image.view, x, y);
+  OpenedCache opened = open_cache(source.cache, true);
+  const Frame& frame = opened.image.frame;
+  if (opened.scene_hash != source.scene_hash) require_sound({CacheFault::other_scene, "", ""}, source.cache);
+  if (x >= frame.width || y >= frame.height)
+    throw UsageError("PIXEL: the image is " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +
+                     " pixels");
+  auto history = std::make_unique<PixelHistory>(std::move(*opened.state), opened.image.view, x, y);
   const Rgba color = history->color();
   require(std::memcmp(&color, &frame.pixels[std::size_t{y} * frame.width + x], sizeof color) == 0,
           "a pixel is traced as it stands in the cache");

@@ -8,8 +8,8 @@ ExitCode run_check(const Arguments& arguments, Console& console) {
   const std::string& cache = arguments.inputs[0];
   CacheReport report = check_cache(cache);
   if (report.worst.fault == CacheFault::none) {
-    RestoredImage restored;
-    const CacheAnswer answer = restore_image(load_cache(cache), restored);
+    OpenedCache opened;
+    const CacheAnswer answer = open_cache(cache, false, opened);
     if (answer.fault != CacheFault::none) {
       report.worst = answer;
       report.findings.push_back(answer.file + ": " + answer.detail);

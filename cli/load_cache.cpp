@@ -1,7 +1,5 @@
 #include "load_cache.h"
 
-#include "engine/cached_image.h"
-
 namespace relook {
 
 ExitCode exit_code(CacheFault fault) {
@@ -49,14 +47,24 @@ CacheSizes cache_sizes(const Json& manifest) {
   return sizes;
 }
 
-MendedCache load_mended_cache(const std::string& cache) {
-  MendedCache mended;
+CacheContent load_mended_cache(const std::string& cache) {
+  CacheContent content;
   CacheLosses losses;
-  require_sound(read_cache(cache, mended.content, &losses), cache);
-  for (const CacheAnswer& fault : losses.faults) mended.damage.push_back(fault.file + ": " + fault.detail);
-  require_sound(make_good(mended.content, losses), cache);
-  for (const std::size_t tile : losses.tiles) mended.ray_trees_rebuilt += mended.content.trees[tile].paths.size();
-  return mended;
+  require_sound(read_cache(cache, content, &losses), cache);
+  require_sound(make_good(content, losses), cache);
+  return content;
+}
+
+OpenedCache open_cache(const std::string& cache, bool mends) {
+  OpenedCache opened;
+  require_sound(open_cache(cache, mends, opened), cache);
+  return opened;
+}
+
+std::vector<std::string> sentences(const CacheLosses& losses) {
+  std::vector<std::string> sentences;
+  for (const CacheAnswer& fault : losses.faults) sentences.push_back(fault.file + ": " + fault.detail);
+  return sentences;
 }
 
 }  // namespace relook

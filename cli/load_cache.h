@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "cache/cache.h"
+#include "engine/cached_image.h"
 #include "engine/report.h"
 
 namespace relook {
@@ -19,13 +20,11 @@ void require_sound(const CacheAnswer& answer, const std::string& cache);
 /// Refuses any damage.
 [[nodiscard]] CacheContent load_cache(const std::string& cache);
 
-/// A cache with what was damaged or missing traced again.
-struct MendedCache {
-  CacheContent content;
-  std::vector<std::string> damage;      // one sentence a file
-  std::uint64_t ray_trees_rebuilt = 0;  // one a sample
-};
-/// Refuses only damage that cannot be made good.
-[[nodiscard]] MendedCache load_mended_cache(const std::string& cache);
+/// With what was damaged or missing traced again; refuses only damage that cannot be made good.
+[[nodiscard]] CacheContent load_mended_cache(const std::string& cache);
+/// As a replay starts from it. `mends`: see open_cache().
+[[nodiscard]] OpenedCache open_cache(const std::string& cache, bool mends);
+/// One sentence a file.
+[[nodiscard]] std::vector<std::string> sentences(const CacheLosses& losses);
 
 }  // namespace relook

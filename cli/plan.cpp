@@ -39,7 +39,7 @@ void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
 ExitCode run_plan(const Arguments& arguments, Console& console) {
   const std::string& cache = arguments.inputs[0];
   const Journal journal = read_journal(arguments.inputs[1]);
-  const CacheContent content = load_mended_cache(cache).content;
+  const CacheContent content = load_mended_cache(cache);
   const ViewOptions view{content.samples, content.max_depth, content.shadow_bits};
   {
     LookDocument document = content.document;

@@ -96,7 +96,7 @@ struct CacheFacts {
 /// Replays one journal into one run folder.
 class JournalRun {
  public:
-  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
+  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, OpenedCache opened,
              const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
              const std::filesystem::path& folder);
 
@@ -145,16 +145,16 @@ std::vector<ParameterSet> chosen_parameters(SceneState& state, const std::vector
   return sets;
 }
 
-JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RestoredImage restored,
+JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, OpenedCache opened,
                        const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
                        const std::filesystem::path& folder)
     : arguments_(arguments),
       console_(console),
       journal_(journal),
-      folder_(folder, restored.image.frame.width, restored.image.frame.height,
+      folder_(folder, opened.image.frame.width, opened.image.frame.height,
               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view,
               run_hash(arguments, journal, view.get()), arguments.fresh),
-      replayer_(std::move(*restored.state), std::move(restored.image), region_options(arguments.structures),
+      replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
                 residency_options(arguments, folder)) {
   report_.scene = replayer_.state().document().file;
   report_.scene_hash = cache.scene_hash;
@@ -360,10 +360,17 @@ std::vector<Journal> read_journals(const Arguments& arguments) {
   return journals;
 }
 
-RestoredImage restore(CacheContent content, const std::string& cache) {
-  RestoredImage restored;
-  require_sound(restore_image(std::move(content), restored), cache);
-  return restored;
+/// For another run from the same state.
+OpenedCache copy_of(const OpenedCache& opened) {
+  const SceneState& state = *opened.state;
+  return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()), opened.image,
+          opened.scene_hash, opened.losses};
+}
+
+std::uint64_t samples_in(const Image& image, const std::vector<std::size_t>& tiles) {
+  std::uint64_t samples = 0;
+  for (const std::size_t tile : tiles) samples += image.trees[tile].paths.size();
+  return samples;
 }
 
 }  // namespace
@@ -380,31 +387,32 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     RunFolder::refuse_foreign(folders.back());
   }
   std::optional<TraceScope> reading(std::in_place, console.trace(), "read cache");
-  MendedCache mended = arguments.strict ? MendedCache{load_cache(cache), {}, 0} : load_mended_cache(cache);
-  for (std::string& damage : mended.damage) damage = cache + ": " + damage + "; traced again";
-  console.warn(mended.damage);
-  CacheContent& content = mended.content;
-  if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != content.scene_hash)
+  OpenedCache opened = open_cache(cache, !arguments.strict);
+  std::vector<std::string> damage = sentences(opened.losses);
+  for (std::string& sentence : damage) sentence = cache + ": " + sentence + "; traced again";
+  console.warn(damage);
+  if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != opened.scene_hash)
     require_sound({CacheFault::other_scene, "", ""}, cache);
-  if (arguments.shadow_bits.value_or(content.shadow_bits) != content.shadow_bits)
+  const std::uint32_t shadow_bits = opened.image.view.shadow_bits;
+  if (arguments.shadow_bits.value_or(shadow_bits) != shadow_bits)
     throw Error(ExitCode::cache_mismatch, cache, "",
-                "the cache holds shadow counters of " + std::to_string(content.shadow_bits) +
+                "the cache holds shadow counters of " + std::to_string(shadow_bits) +
                     " bits; preprocess again with --shadow-bits");
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);
-  const CacheFacts facts{content.scene_hash, cache_sizes(manifest), mended.damage, mended.ray_trees_rebuilt};
+  const CacheFacts facts{opened.scene_hash, cache_sizes(manifest), damage,
+                         samples_in(opened.image, opened.losses.tiles)};
 
   reading.reset();
   std::uint64_t pixels_different = 0;
-  std::optional<TraceScope> restoring(std::in_place, console.trace(), "restore image, check journals");
-  RestoredImage restored = restore(has_several ? content : std::move(content), cache);
-  for (const Journal& journal : journals) check_journal(*restored.state, journal);
-  restoring.reset();
+  std::optional<TraceScope> checking(std::in_place, console.trace(), "check journals");
+  for (const Journal& journal : journals) check_journal(*opened.state, journal);
+  checking.reset();
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
-    if (i > 0) restored = restore(i + 1 < journals.size() ? content : std::move(content), cache);
-    const std::vector<ParameterSet> chosen = chosen_parameters(*restored.state, arguments.structures.params);
-    JournalRun run(arguments, console, journals[i], std::move(restored), facts, view, folders[i]);
+    OpenedCache next = i + 1 < journals.size() ? copy_of(opened) : OpenedCache();
+    const std::vector<ParameterSet> chosen = chosen_parameters(*opened.state, arguments.structures.params);
+    JournalRun run(arguments, console, journals[i], std::exchange(opened, std::move(next)), facts, view, folders[i]);
     if (!chosen.empty()) run.choose_parameters(chosen);
     pixels_different += run.run(i, journals.size());
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});

@@ -138,8 +138,7 @@ std::map<std::string, Json> spans_of(const Json& trace) {
 TEST_F(Pipeline, traces_have_the_stages_of_each_verb) {
   ASSERT_EQ(replay("run", {"--quiet", "--trace", at("replay.json")}).exit_code, 0);
   const auto replayed = spans_of(json("replay.json"));
-  for (const char* name :
-       {"read cache", "restore image, check journals", "0 base", "1 green", "3_01 slide", "classify"})
+  for (const char* name : {"read cache", "check journals", "0 base", "1 green", "3_01 slide", "classify"})
     EXPECT_TRUE(replayed.contains(name)) << name;
   const Json& step = replayed.at("2 twin");
   EXPECT_EQ(step["args"]["class"], "geometric");

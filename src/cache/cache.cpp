@@ -186,8 +186,29 @@ CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& cont
   return losses;
 }
 
-/// Reads everything that can be read; what is wrong with it, in the order of the files.
-std::vector<Finding> read_everything(const std::filesystem::path& path, Reading& reading) {
+constexpr std::size_t kFrame = 3, kPaths = 4, kFirstTrees = 5;  // of parts_of(), where the scene comes first
+
+/// Frame, paths and trees. Trees are checked against the paths, and take over pixels of the frame.
+std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& reading) {
+  CacheContent& content = reading.content;
+  require(parts[kFrame].part == Part::frame && parts[kPaths].part == Part::paths, "parts have their places");
+  std::vector<Finding> findings = read_parts(parts.subspan(kFrame, 2), reading);
+  reading.uses_trees = std::ranges::none_of(findings, is_fault);
+  if (reading.uses_trees) {
+    const PathLayout layout{content.lights, content.shadow_bits};
+    for (std::size_t i = 0; i < content.paths.size(); ++i)
+      reading.hits_of_path.push_back(hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
+    const std::size_t tiles = cache_tile_count(content.camera);
+    content.trees.resize(tiles);
+    content.sample_colors.resize(tiles);
+  }
+  std::ranges::move(read_parts(parts.subspan(kFirstTrees), reading), std::back_inserter(findings));
+  return findings;
+}
+
+/// Reads everything that can be read; what is wrong with it, in the order of the files. `use_scene`: see read_cache().
+std::vector<Finding> read_everything(const std::filesystem::path& path, Reading& reading,
+                                     const std::function<void(CacheContent&)>& use_scene = {}) {
   reading.path = path;
   try {
     reading.manifest = load_manifest(path);
@@ -212,26 +233,17 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
         {{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
 
   const std::vector<PartFile> parts = parts_of(content.camera);
-  // Trees are checked against the paths, and take over pixels of the frame; everything else can be read beside them.
-  constexpr std::size_t kPaths = 4, kFrame = 3, kFirstTrees = 5;
-  require(parts[kPaths].part == Part::paths && parts[kFrame].part == Part::frame, "parts have their places");
-  std::vector<Finding> all = read_parts(std::span(parts).subspan(kFrame, 2), reading);
-  reading.uses_trees = std::ranges::none_of(all, is_fault);
-  if (reading.uses_trees) {
-    const PathLayout layout{content.lights, content.shadow_bits};
-    for (std::size_t i = 0; i < content.paths.size(); ++i)
-      reading.hits_of_path.push_back(hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
-    const std::size_t tiles = cache_tile_count(content.camera);
-    content.trees.resize(tiles);
-    content.sample_colors.resize(tiles);
-  }
-  // The look document takes longest and comes first.
-  std::vector<PartFile> rest(parts.begin(), parts.begin() + kFrame);
-  rest.insert(rest.end(), parts.begin() + kFirstTrees, parts.end());
-  const std::vector<Finding> others = read_parts(rest, reading);
-  all.insert(all.begin(), others.begin(), others.begin() + kFrame);
-  all.insert(all.end(), others.begin() + kFrame, others.end());
-  std::ranges::copy_if(all, std::back_inserter(findings), is_fault);
+  std::vector<Finding> of_scene, of_image;
+  parallel_for(2, [&](std::size_t half) {
+    if (half == 1) {
+      of_image = read_image(parts, reading);
+      return;
+    }
+    of_scene = read_parts(std::span(parts).first(kFrame), reading);
+    if (use_scene && findings.empty() && std::ranges::none_of(of_scene, is_fault)) use_scene(content);
+  });
+  std::ranges::copy_if(of_scene, std::back_inserter(findings), is_fault);
+  std::ranges::copy_if(of_image, std::back_inserter(findings), is_fault);
   return findings;
 }
 
@@ -303,9 +315,10 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
   folder.publish();
 }
 
-CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content, CacheLosses* losses) {
+CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content, CacheLosses* losses,
+                       const std::function<void(CacheContent&)>& use_scene) {
   Reading reading;
-  const std::vector<Finding> findings = read_everything(path, reading);
+  const std::vector<Finding> findings = read_everything(path, reading, use_scene);
   const auto fault =
       std::ranges::find_if(findings, [&](const Finding& finding) { return losses == nullptr || !is_loss(finding); });
   if (fault != findings.end()) return fault->answer;

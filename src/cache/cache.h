@@ -2,6 +2,7 @@
 // described in FORMAT.md beside this file.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,9 +61,11 @@ struct CacheLosses {
 
 /// Reads and verifies every hash and every index. On any fault `content` is untouched; with `losses`, files that are
 /// missing or do not have their hash are none if they can be made good: then the tiles of `losses` have no trees and no
-/// colours, and a lost path table is empty.
+/// colours, and a lost path table is empty. `use_scene` is called while the image is still read, when all else is there
+/// and sound: document, assets, pyramids and the plain values. What it does to them stays done.
 [[nodiscard]] CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content,
-                                     CacheLosses* losses = nullptr);
+                                     CacheLosses* losses = nullptr,
+                                     const std::function<void(CacheContent&)>& use_scene = {});
 
 /// Every byte and every invariant; one line per finding, empty if the cache is sound. Goes on after the first fault.
 struct CacheReport {

@@ -1,9 +1,11 @@
 #include "engine/cached_image.h"
 
+#include <atomic>
 #include <span>
 #include <utility>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "engine/render.h"
 #include "trace/path_cursor.h"
 
@@ -61,15 +63,17 @@ std::string broken_hits(const Scene& scene, const Image& image) {
   const PathLayout layout{scene.light_order.size(), image.view.shadow_bits};
   for (std::size_t i = 0; i < image.paths.size(); ++i)
     limits.push_back(triangles_hit(scene, image.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
-  for (const TileTrees& tile : image.trees) {
+  std::atomic<bool> is_broken = false;
+  parallel_for(image.trees.size(), [&](std::size_t index) {
+    const TileTrees& tile = image.trees[index];
     for (std::size_t sample = 0; sample < tile.paths.size(); ++sample) {
       const std::vector<std::uint64_t>& limit = limits[tile.paths[sample].index()];
       const std::span<const Hit> hits = tile.hits_of(sample);
       for (std::size_t i = 0; i < hits.size(); ++i)
-        if (hits[i].primitive >= limit[i]) return "a hit names a triangle that its object does not have";
+        if (hits[i].primitive >= limit[i]) is_broken = true;
     }
-  }
-  return "";
+  });
+  return is_broken ? "a hit names a triangle that its object does not have" : "";
 }
 
 namespace {
@@ -96,6 +100,24 @@ Image take_image(CacheContent& content) {
   return image;
 }
 
+void put_back(Image image, CacheContent& content) {
+  content.frame = std::move(image.frame.pixels);
+  content.paths = std::move(image.paths);
+  content.trees = std::move(image.trees);
+  content.sample_colors = std::move(image.sample_colors);
+}
+
+/// make_good() for an image; the answer is about its paths.
+CacheAnswer trace_again(const Scene& scene, const CacheLosses& losses, Image& image) {
+  if (losses.empty()) return {};
+  const std::size_t known_paths = image.paths.size();
+  RenderStats stats;
+  rebuild_tiles(scene, image, losses.tiles, stats);
+  if (known_paths > 0 && image.paths.size() != known_paths)
+    return {CacheFault::damaged, "paths", "the table lacks paths of the scene"};
+  return {};
+}
+
 }  // namespace
 
 CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
@@ -107,29 +129,29 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   scene_part.objects = content.objects;
   scene_part.lights = content.lights;
   std::unique_ptr<SceneState> state;
-  const CacheAnswer answer = compile(scene_part, state);
+  CacheAnswer answer = compile(scene_part, state);
   if (answer.fault != CacheFault::none) return answer;
   Image image = take_image(content);
-  const std::size_t known_paths = image.paths.size();
-  RenderStats stats;
-  rebuild_tiles(state->scene(), image, losses.tiles, stats);
-  if (known_paths > 0 && image.paths.size() != known_paths)
-    return {CacheFault::damaged, "paths", "the table lacks paths of the scene"};
-  content.frame = std::move(image.frame.pixels);
-  content.paths = std::move(image.paths);
-  content.trees = std::move(image.trees);
-  content.sample_colors = std::move(image.sample_colors);
-  return {};
+  answer = trace_again(state->scene(), losses, image);
+  put_back(std::move(image), content);
+  return answer;
 }
 
-CacheAnswer restore_image(CacheContent content, RestoredImage& restored) {
+CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened) {
+  CacheContent content;
+  CacheLosses losses;
   std::unique_ptr<SceneState> state;
-  CacheAnswer answer = compile(content, state);
-  if (answer.fault != CacheFault::none) return answer;
+  CacheAnswer of_scene;
+  const auto use_scene = [&](CacheContent& scene_part) { of_scene = compile(scene_part, state); };
+  if (CacheAnswer answer = read_cache(path, content, mends ? &losses : nullptr, use_scene);
+      answer.fault != CacheFault::none)
+    return answer;
+  if (of_scene.fault != CacheFault::none) return of_scene;
   Image image = take_image(content);
+  if (CacheAnswer answer = trace_again(state->scene(), losses, image); answer.fault != CacheFault::none) return answer;
   std::string broken = broken_hits(state->scene(), image);
   if (!broken.empty()) return {CacheFault::damaged, "trees", std::move(broken)};
-  restored = {std::move(state), std::move(image)};
+  opened = {std::move(state), std::move(image), std::move(content.scene_hash), std::move(losses)};
   return {};
 }
 

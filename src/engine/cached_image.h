@@ -20,11 +20,15 @@ namespace relook {
 /// scene from being compiled.
 [[nodiscard]] CacheAnswer make_good(CacheContent& content, const CacheLosses& losses);
 
-struct RestoredImage {
+/// What a replay starts from.
+struct OpenedCache {
   std::unique_ptr<SceneState> state;
   Image image;
+  std::string scene_hash;
+  CacheLosses losses;  // made good
 };
-/// Compiles the look document and takes over the image. On a fault `restored` is untouched.
-[[nodiscard]] CacheAnswer restore_image(CacheContent content, RestoredImage& restored);
+/// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults. On a fault
+/// `opened` is untouched.
+[[nodiscard]] CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened);
 
 }  // namespace relook
