@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <new>
 
 #include "base/error.h"
@@ -42,18 +43,31 @@ void group_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
     for (std::size_t i = 0; i < count; ++i) *out++ = in[i * stride + k];
 }
 
+constexpr std::size_t kWord = sizeof(std::uint32_t);
+
+/// Word i of `out`, every `Stride` bytes, from the four groups of its bytes, `group_bytes` apart.
+template <std::size_t Stride>
+void ungroup_words(const std::byte* in, std::size_t group_bytes, std::size_t count, std::byte* out) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(in);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t value = static_cast<std::uint32_t>(bytes[i]) |
+                                static_cast<std::uint32_t>(bytes[group_bytes + i]) << 8 |
+                                static_cast<std::uint32_t>(bytes[2 * group_bytes + i]) << 16 |
+                                static_cast<std::uint32_t>(bytes[3 * group_bytes + i]) << 24;
+    std::memcpy(out + i * Stride, &value, sizeof value);
+  }
+}
+
 void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
   const std::size_t count = in.size() / stride;
   const std::byte* next = in.data();
-  if (stride == 4) {  // most columns: in one go, which the compiler vectorises
-    const auto* bytes = reinterpret_cast<const unsigned char*>(next);
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t value = static_cast<std::uint32_t>(bytes[i]) |
-                                  static_cast<std::uint32_t>(bytes[count + i]) << 8 |
-                                  static_cast<std::uint32_t>(bytes[2 * count + i]) << 16 |
-                                  static_cast<std::uint32_t>(bytes[3 * count + i]) << 24;
-      std::memcpy(out + i * sizeof value, &value, sizeof value);
-    }
+  // Most columns: in one go, which the compiler vectorises.
+  if (stride == kWord) return ungroup_words<kWord>(next, count, count, out);
+  constexpr std::size_t kColor = 4 * kWord, kBlock = 256;  // values that stay in the cache
+  if (stride == kColor) {
+    for (std::size_t i = 0; i < count; i += kBlock)
+      for (std::size_t word = 0; word < kColor; word += kWord)
+        ungroup_words<kColor>(next + word * count + i, count, std::min(kBlock, count - i), out + i * kColor + word);
     return;
   }
   for (std::size_t k = 0; k < stride; ++k)
@@ -194,16 +208,16 @@ void ContainerReader::read(const Section& section, std::span<std::byte> out) con
   const BytesView stored = file_.subspan(section.offset, section.stored_bytes);
   check_sound(hash64(stored) == section.hash, "hash mismatch in section " + section.name);
   if (section.raw_bytes == 0) return;
-  Bytes unpacked;
+  std::unique_ptr<std::byte[]> unpacked;  // not filled with zeros first
   BytesView grouped = stored;
   if (section.codec == kZstd) {
     const bool in_place = section.stride == 1;
-    if (!in_place) unpacked.resize(section.raw_bytes);
-    std::byte* target = in_place ? out.data() : unpacked.data();
+    if (!in_place) unpacked = std::make_unique_for_overwrite<std::byte[]>(section.raw_bytes);
+    std::byte* target = in_place ? out.data() : unpacked.get();
     const std::size_t size = ZSTD_decompress(target, section.raw_bytes, stored.data(), stored.size());
     check_sound(ZSTD_isError(size) == 0 && size == section.raw_bytes, "section " + section.name + " does not unpack");
     if (in_place) return;
-    grouped = unpacked;
+    grouped = {unpacked.get(), section.raw_bytes};
   }
   if (section.stride == 1)
     std::memcpy(out.data(), grouped.data(), grouped.size());
