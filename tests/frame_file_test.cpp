@@ -3,7 +3,9 @@
 #include "engine/frame_file.h"
 
 #include <gtest/gtest.h>
+#include <half.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -11,6 +13,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "engine/compare.h"
+#include "engine/half_bits.h"
 #include "engine/preview.h"
 #include "run_program.h"
 #include "scene/image.h"
@@ -44,6 +47,17 @@ TEST(FrameFile, half_frames_round_to_nearest) {
   const Frame back = decode_exr(encode_exr(frame, kMeta, PixelFormat::half), "frame");
   EXPECT_GT(compare_frames(frame, back).pixels_different, 0U);
   EXPECT_LE(compare_frames(frame, back).max_error, 1.0 / 4096);  // half an ulp below 1
+}
+
+TEST(FrameFile, half_bits_are_those_of_openexr) {
+  constexpr std::uint32_t kStep = 997;  // all exponents and signs, ties and not
+  for (std::uint64_t i = 0; i < std::uint64_t{1} << 32; i += kStep) {
+    for (const auto bits : {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i) & 0xFFFFF000}) {
+      const auto value = std::bit_cast<float>(bits);
+      const float clamped = std::isfinite(value) ? std::clamp(value, -65504.0F, 65504.0F) : value;
+      ASSERT_EQ(half_bits(value), half(clamped).bits()) << bits;
+    }
+  }
 }
 
 TEST(FrameFile, half_clamps_finite_values_and_keeps_the_others) {

@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
+#include "engine/half_bits.h"
 #include "trace/ray_tree.h"
 
 namespace relook {
@@ -21,8 +21,6 @@ constexpr int kDeflateLevel = 1;
 struct FreeCompressor {
   void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
 };
-
-constexpr float kLargestHalf = 65504.0F;
 
 static_assert(std::endian::native == std::endian::little, "OpenEXR files are little-endian");
 
@@ -59,11 +57,6 @@ void write_header(exr_context_t file, std::uint32_t width, std::uint32_t height,
 }
 
 }  // namespace
-
-std::uint16_t half_bits(float value) {
-  if (std::isfinite(value)) value = std::clamp(value, -kLargestHalf, kLargestHalf);
-  return half(value).bits();
-}
 
 float stored_value(float value, PixelFormat format) {
   if (format == PixelFormat::float32) return value;

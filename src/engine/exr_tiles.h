@@ -22,8 +22,6 @@ struct ExrChannel {
 /// String attributes, in the order of the file.
 using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 
-/// The nearest half; finite values beyond its range become its largest ones.
-[[nodiscard]] std::uint16_t half_bits(float value);
 /// A value as it comes back from a file.
 [[nodiscard]] float stored_value(float value, PixelFormat format);
 

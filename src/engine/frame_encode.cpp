@@ -6,11 +6,23 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "base/vector_clones.h"
 #include "engine/exr_tiles.h"
 #include "engine/frame_file.h"
+#include "engine/half_bits.h"
 
 namespace relook {
 namespace {
+
+constexpr std::size_t kStride = sizeof(Rgba) / sizeof(float);  // from a channel's value to that of the next pixel
+
+/// `count`: kTileSize at most.
+RELOOK_VECTOR_CLONES
+void put_halves(const float* values, std::size_t count, unsigned char* out) {
+  std::array<std::uint16_t, kTileSize> halves;
+  for (std::size_t i = 0; i < count; ++i) halves[i] = half_bits(values[i * kStride]);
+  std::memcpy(out, halves.data(), count * sizeof halves[0]);
+}
 
 /// The tile as OpenEXR lays it out before compression: row by row, channel by channel in alphabetical order.
 std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, PixelFormat format) {
@@ -18,17 +30,17 @@ std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, 
   const std::size_t value_bytes = format == PixelFormat::half ? 2 : 4;
   std::vector<unsigned char> bytes(std::size_t{rect.pixels()} * kChannels.size() * value_bytes);
   unsigned char* out = bytes.data();
+  const std::size_t columns = rect.x1 - rect.x0;
   for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
+    const Rgba* row = &frame.pixels[std::size_t{y} * frame.width + rect.x0];
     for (const auto channel : kChannels) {
-      for (std::uint32_t x = rect.x0; x < rect.x1; ++x, out += value_bytes) {
-        const float value = frame.pixels[std::size_t{y} * frame.width + x].*channel;
-        if (format == PixelFormat::half) {
-          const std::uint16_t bits = half_bits(value);
-          std::memcpy(out, &bits, sizeof bits);
-        } else {
-          std::memcpy(out, &value, sizeof value);
-        }
-      }
+      const float* values = &(row->*channel);
+      if (format == PixelFormat::half)
+        put_halves(values, columns, out);
+      else
+        for (std::size_t x = 0; x < columns; ++x)
+          std::memcpy(out + x * sizeof(float), values + x * kStride, sizeof(float));
+      out += columns * value_bytes;
     }
   }
   return bytes;

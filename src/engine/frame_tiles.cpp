@@ -119,9 +119,12 @@ std::vector<unsigned char> FrameTiles::unpacked(std::size_t tile) const {
   if (libdeflate_zlib_decompress(decompressor.get(), chunk.data(), chunk.size(), split.data(), raw_bytes, nullptr) !=
       LIBDEFLATE_SUCCESS)
     throw InputError(file_, "tile " + std::to_string(tile), "damaged");
-  for (std::size_t i = 1; i < raw_bytes; ++i) split[i] = static_cast<unsigned char>(split[i] + split[i - 1] - 128);
-  const std::size_t even_bytes = (raw_bytes + 1) / 2;
-  for (std::size_t i = 0; i < raw_bytes; ++i) raw[i] = split[i % 2 == 0 ? i / 2 : even_bytes + i / 2];
+  // Differences, first those of the bytes at even places.
+  unsigned char value = 128;
+  const unsigned char* next = split.data();
+  for (const std::size_t first : {0, 1})
+    for (std::size_t i = first; i < raw_bytes; i += 2)
+      raw[i] = value = static_cast<unsigned char>(value + *next++ - 128);
   return raw;
 }
 
@@ -135,9 +138,11 @@ std::vector<Rgba> FrameTiles::pixels(std::size_t tile) const {
   std::size_t channel_start = 0;  // bytes from the start of a row
   for (const Channel& channel : channels_) {
     const auto member = std::ranges::find(kMembers, channel.name, [](const auto& entry) { return entry.first; });
-    for (std::size_t i = 0; member != kMembers.end() && i < pixels.size(); ++i)
-      pixels[i].*member->second = value_of(
-          &raw[(i / columns) * columns * pixel_bytes_ + channel_start + i % columns * channel.bytes], channel.bytes);
+    for (std::size_t first = 0; member != kMembers.end() && first < pixels.size(); first += columns) {
+      const unsigned char* value = &raw[first * pixel_bytes_ + channel_start];
+      for (std::size_t i = first; i < first + columns; ++i, value += channel.bytes)
+        pixels[i].*member->second = value_of(value, channel.bytes);
+    }
     channel_start += columns * channel.bytes;
   }
   return pixels;

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "engine/half_bits.h"
 #include "engine/layer_tile.h"
 
 namespace relook {

@@ -7,6 +7,8 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <span>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -24,29 +26,32 @@ std::array<float, 255> srgb_boundaries() {
   return boundary;
 }
 
-/// Codes of linear values: by the first bits of the number, then by the few boundaries among numbers with these bits.
+/// Codes of linear values: by the first bits of the number, then by the one boundary among numbers with these bits.
 class SrgbCodes {
  public:
-  SrgbCodes() : boundary_(srgb_boundaries()) {
+  SrgbCodes() {
+    std::ranges::copy(srgb_boundaries(), boundary_.begin());
+    boundary_.back() = std::numeric_limits<float>::infinity();
     for (std::uint32_t k = 0; k < first_.size(); ++k)
       first_[k] = slow_code(std::bit_cast<float>((k + kLowest) << kShift));
+    for (std::size_t k = 1; k < first_.size(); ++k)
+      require(first_[k] - first_[k - 1] <= 1, "the steps are finer than the codes");
   }
   [[nodiscard]] unsigned char of(float linear) const {
-    if (!(linear > 0x1p-13F)) return 0;  // NaN, too
-    if (linear >= 1.0F) return 255;
-    unsigned char code = first_[(std::bit_cast<std::uint32_t>(linear) >> kShift) - kLowest];
-    while (code < 255 && linear >= boundary_[code]) ++code;
-    return code;
+    constexpr float kDark = 0x1p-13F, kBright = 0x1.FFFFFEp-1F;  // of the codes 0 and 255
+    const float shown = linear > kDark ? std::min(linear, kBright) : kDark;  // NaN is dark, too
+    const unsigned char code = first_[(std::bit_cast<std::uint32_t>(shown) >> kShift) - kLowest];
+    return static_cast<unsigned char>(code + (shown >= boundary_[code] ? 1 : 0));
   }
 
  private:
   static constexpr unsigned kShift = 16;  // 128 steps an octave
   static constexpr std::uint32_t kLowest = (127U - 13U) << (23 - kShift), kEnd = 127U << (23 - kShift);
   [[nodiscard]] unsigned char slow_code(float linear) const {
-    return static_cast<unsigned char>(std::upper_bound(boundary_.begin(), boundary_.end(), linear) - boundary_.begin());
+    return static_cast<unsigned char>(std::ranges::upper_bound(boundary_, linear) - boundary_.begin());
   }
 
-  std::array<float, 255> boundary_;
+  std::array<float, 256> boundary_;
   std::array<unsigned char, kEnd - kLowest> first_{};  // code of the smallest number with these bits
 };
 
@@ -111,26 +116,28 @@ std::uint32_t PreviewEncoder::end_row(std::size_t band) const {
   return std::min(static_cast<std::uint32_t>(band + 1) * kBandRows, height_);
 }
 
-void PreviewEncoder::take(const Frame& frame, std::uint32_t x, std::uint32_t y) {
-  static const SrgbCodes codes_of;
+void PreviewEncoder::take(const Frame& frame, std::uint32_t x, std::uint32_t y, std::uint32_t count) {
+  static const SrgbCodes srgb;
+  const SrgbCodes& codes_of = srgb;
   const std::size_t index = std::size_t{y} * width_ + x;
-  const Rgba& pixel = frame.pixels[index];
   unsigned char* codes = &codes_[index * 3];
-  if (view_) {
-    const Rgba shown = view_->apply(pixel);
-    for (int channel = 0; channel < 3; ++channel) codes[channel] = display_code(shown[channel]);
-    return;
+  for (const Rgba& pixel : std::span(frame.pixels).subspan(index, count)) {
+    if (view_) {
+      const Rgba shown = view_->apply(pixel);
+      for (int channel = 0; channel < 3; ++channel) codes[channel] = display_code(shown[channel]);
+    } else {
+      codes[0] = codes_of.of(pixel.r);
+      codes[1] = codes_of.of(pixel.g);
+      codes[2] = codes_of.of(pixel.b);
+    }
+    codes += 3;
   }
-  codes[0] = codes_of.of(pixel.r);
-  codes[1] = codes_of.of(pixel.g);
-  codes[2] = codes_of.of(pixel.b);
 }
 
 void PreviewEncoder::update(const Frame& frame) {
   require(frame.width == width_ && frame.height == height_, "a preview encoder keeps one size");
   parallel_for(bands_.size(), [&](std::size_t band) {
-    for (auto y = static_cast<std::uint32_t>(band) * kBandRows; y < end_row(band); ++y)
-      for (std::uint32_t x = 0; x < width_; ++x) take(frame, x, y);
+    for (auto y = static_cast<std::uint32_t>(band) * kBandRows; y < end_row(band); ++y) take(frame, 0, y, width_);
     bands_[band].is_stale = true;
   });
 }
@@ -142,7 +149,7 @@ void PreviewEncoder::update(const Frame& frame, const ChangedPixels& changed_pix
     for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
       std::uint64_t row = tile.mask[y - rect.y0];
       if (row != 0) bands_[y / kBandRows].is_stale = true;
-      for (; row != 0; row &= row - 1) take(frame, rect.x0 + static_cast<std::uint32_t>(std::countr_zero(row)), y);
+      for (; row != 0; row &= row - 1) take(frame, rect.x0 + static_cast<std::uint32_t>(std::countr_zero(row)), y, 1);
     }
   }
 }

@@ -34,7 +34,8 @@ class PreviewEncoder {
     Bytes deflated;              // whole bytes, no reference to other bands
     std::uint32_t checksum = 1;  // Adler-32 of the filtered rows
   };
-  void take(const Frame& frame, std::uint32_t x, std::uint32_t y);
+  /// `count` pixels of a row.
+  void take(const Frame& frame, std::uint32_t x, std::uint32_t y, std::uint32_t count);
   [[nodiscard]] std::uint32_t end_row(std::size_t band) const;
   [[nodiscard]] std::vector<unsigned char> filtered_rows(std::size_t band) const;
 
