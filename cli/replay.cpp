@@ -4,6 +4,7 @@
 #include <optional>
 #include <set>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "edit/apply.h"
 #include "engine/cached_image.h"
@@ -109,6 +110,8 @@ class JournalRun {
   /// error leaves none. Returns the number of pixels that --verify found different.
   std::uint64_t run(std::size_t place, std::size_t runs);
   [[nodiscard]] const RunReport& report() const { return report_; }
+  /// After run().
+  [[nodiscard]] Replayer take_replayer() { return std::move(replayer_); }
 
  private:
   void run_steps();
@@ -416,6 +419,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     if (!chosen.empty()) run.choose_parameters(chosen);
     pixels_different += run.run(i, journals.size());
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
+    if (i + 1 == journals.size()) keep_to_the_end(run.take_replayer());
   }
   console.json({{"runs", std::move(runs)}, {"pixels_different", pixels_different}});
   return pixels_different == 0 ? ExitCode::ok : ExitCode::difference;
