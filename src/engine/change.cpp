@@ -143,6 +143,13 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
   return change;
 }
 
+StepChange no_change(const std::vector<LightId>& lights) {
+  StepChange change;
+  change.rays.old_lights = lights;
+  for (std::uint32_t i = 0; i < lights.size(); ++i) change.rays.old_light_index.push_back(i);
+  return change;
+}
+
 bool is_compressible(const ColorChange& change) {
   return change.reassigned.empty() && std::ranges::none_of(change.parameters.materials, [](const auto& material) {
            return (material.second & kMappingMask) != 0;

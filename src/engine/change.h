@@ -36,6 +36,9 @@ struct StepChange {
 [[nodiscard]] StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,
                                      const std::vector<LightId>& old_lights);
 
+/// An edit of nothing. `lights`: the light order.
+[[nodiscard]] StepChange no_change(const std::vector<LightId>& lights);
+
 /// True if compressed colour trees can follow the change.
 [[nodiscard]] bool is_compressible(const ColorChange& change);
 

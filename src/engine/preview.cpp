@@ -38,7 +38,7 @@ class SrgbCodes {
       require(first_[k] - first_[k - 1] <= 1, "the steps are finer than the codes");
   }
   [[nodiscard]] unsigned char of(float linear) const {
-    constexpr float kDark = 0x1p-13F, kBright = 0x1.FFFFFEp-1F;  // of the codes 0 and 255
+    constexpr float kDark = 0x1p-13F, kBright = 0x1.FFFFFEp-1F;              // of the codes 0 and 255
     const float shown = linear > kDark ? std::min(linear, kBright) : kDark;  // NaN is dark, too
     const unsigned char code = first_[(std::bit_cast<std::uint32_t>(shown) >> kShift) - kLowest];
     return static_cast<unsigned char>(code + (shown >= boundary_[code] ? 1 : 0));
@@ -117,8 +117,7 @@ std::uint32_t PreviewEncoder::end_row(std::size_t band) const {
 }
 
 void PreviewEncoder::take(const Frame& frame, std::uint32_t x, std::uint32_t y, std::uint32_t count) {
-  static const SrgbCodes srgb;
-  const SrgbCodes& codes_of = srgb;
+  static const SrgbCodes codes_of;
   const std::size_t index = std::size_t{y} * width_ + x;
   unsigned char* codes = &codes_[index * 3];
   for (const Rgba& pixel : std::span(frame.pixels).subspan(index, count)) {

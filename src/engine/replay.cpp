@@ -1,7 +1,6 @@
 #include "engine/replay.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -12,28 +11,6 @@
 
 namespace relook {
 namespace {
-
-/// For the tiles with anything to do, in their order, what is to become of them.
-std::vector<TileUpdate> updates_to_do(const std::vector<TileWork>& works) {
-  std::vector<TileUpdate> updates;
-  for (std::size_t tile = 0; tile < works.size(); ++tile)
-    if (works[tile].leaves.any()) updates.emplace_back().tile = tile;
-  return updates;
-}
-
-/// Indices of the updates, most work first, so that threads end together.
-std::vector<std::size_t> by_work(const std::vector<TileUpdate>& updates, const std::vector<TileWork>& works) {
-  std::vector<std::size_t> order(updates.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return works[updates[i].tile].leaves.count(); });
-  return order;
-}
-
-/// The update of a tile, if there is one.
-const TileUpdate* find_update(const std::vector<TileUpdate>& updates, std::size_t tile) {
-  const auto found = std::ranges::lower_bound(updates, tile, {}, &TileUpdate::tile);
-  return found != updates.end() && found->tile == tile ? &*found : nullptr;
-}
 
 /// How many values two increasing lists have in common.
 std::size_t common(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
@@ -252,7 +229,7 @@ struct Replayer::Impl {
     compressed.choose(sets);
     for (const ParameterSet& set : sets) {
       if (compressed.most_samples() == 0) return;
-      StepChange change = no_change();
+      StepChange change = no_change(stored.lights());
       change.colors.parameters = set;
       recolorer.compress(change);
     }
@@ -305,16 +282,9 @@ struct Replayer::Impl {
     change.any_moved = true;
     change.any_shadows = true;
   }
-  [[nodiscard]] StepChange no_change() const {
-    StepChange change;
-    RayChange& r = change.rays;
-    r.old_lights = stored.lights();
-    for (std::uint32_t i = 0; i < stored.lights().size(); ++i) r.old_light_index.push_back(i);
-    return change;
-  }
   /// A change that does nothing else.
   [[nodiscard]] StepChange put_back() const {
-    StepChange change = no_change();
+    StepChange change = no_change(stored.lights());
     put_back_with(change);
     return change;
   }
@@ -409,18 +379,9 @@ const Residency& Replayer::residency() const { return impl_->residency; }
 std::uint64_t Replayer::segments() const { return impl_->stored.segments(); }
 
 Resident Replayer::resident() const {
-  Resident resident;
-  resident.ray_paths = impl_->image().paths.bytes() + impl_->stored.index().bytes();
-  for (const TileTrees& tile : impl_->image().trees) {
-    resident.ray_paths += tile.paths.size() * sizeof(PathId);
-    resident.ray_trees += tile.first_hit.size() * sizeof(std::uint32_t) + tile.hits.size() * sizeof(Hit);
-  }
-  resident.tunnels = impl_->stored.regions().group_bytes() + impl_->stored.regions().tunnel_bytes();
-  resident.color_trees = impl_->compressed.bytes();
-  for (const std::vector<Rgba>& colors : impl_->image().sample_colors)
-    resident.color_trees += colors.size() * sizeof(Rgba);
-  const std::uint64_t frame = impl_->image().frame.pixels.size() * sizeof(Rgba);
-  resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + resident.tunnels + frame;
+  Resident resident = impl_->stored.resident();
+  resident.color_trees += impl_->compressed.bytes();
+  resident.total += impl_->compressed.bytes();
   return resident;
 }
 

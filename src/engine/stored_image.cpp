@@ -131,6 +131,20 @@ void StoredImage::forget_hits(double share) {
   }
 }
 
+Resident StoredImage::resident() const {
+  Resident resident;
+  resident.ray_paths = image_.paths.bytes() + index_.bytes();
+  for (const TileTrees& tile : image_.trees) {
+    resident.ray_paths += tile.paths.size() * sizeof(PathId);
+    resident.ray_trees += hit_bytes(tile);
+  }
+  resident.tunnels = regions_.group_bytes() + regions_.tunnel_bytes();
+  for (const std::vector<Rgba>& colors : image_.sample_colors) resident.color_trees += colors.size() * sizeof(Rgba);
+  const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
+  resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + resident.tunnels + frame;
+  return resident;
+}
+
 void StoredImage::set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene) {
   if (atoms == atoms_) return;
   atoms_ = std::move(atoms);

@@ -6,6 +6,7 @@
 
 #include "cache/residency.h"
 #include "engine/changed_pixels.h"
+#include "engine/counters.h"
 #include "engine/image.h"
 #include "engine/path_classes.h"
 #include "engine/path_index.h"
@@ -39,6 +40,8 @@ class StoredImage {
   }
   [[nodiscard]] std::uint64_t segments() const { return segments_; }
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
+  /// Bytes; colours of samples count as colour trees.
+  [[nodiscard]] Resident resident() const;
 
   /// For objects that have been added. `atoms`: of all objects; the known ones keep theirs for now.
   void extend_atoms(const std::vector<ObjectId>& atoms) {

@@ -1,6 +1,7 @@
 #include "engine/tile_update.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "cache/residency.h"
 #include "engine/sampling.h"
@@ -164,6 +165,25 @@ TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork&
   const auto lease = pass.residency.use(PieceKind::ray_trees, tile);
   const auto shader = shaders.take([&] { return std::make_unique<Shader>(pass.grow.scene, pass.programs); });
   return TileUpdater(pass, tile, *shader).update(work);
+}
+
+std::vector<TileUpdate> updates_to_do(const std::vector<TileWork>& works) {
+  std::vector<TileUpdate> updates;
+  for (std::size_t tile = 0; tile < works.size(); ++tile)
+    if (works[tile].leaves.any()) updates.emplace_back().tile = tile;
+  return updates;
+}
+
+std::vector<std::size_t> by_work(const std::vector<TileUpdate>& updates, const std::vector<TileWork>& works) {
+  std::vector<std::size_t> order(updates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t i) { return works[updates[i].tile].leaves.count(); });
+  return order;
+}
+
+const TileUpdate* find_update(const std::vector<TileUpdate>& updates, std::size_t tile) {
+  const auto found = std::ranges::lower_bound(updates, tile, {}, &TileUpdate::tile);
+  return found != updates.end() && found->tile == tile ? &*found : nullptr;
 }
 
 }  // namespace relook

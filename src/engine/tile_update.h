@@ -56,4 +56,12 @@ struct UpdatePass {
 [[nodiscard]] TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,
                                      Pool<Shader>& shaders);
 
+/// For the tiles with anything to do, in their order, what is to become of them. `works`: by tile.
+[[nodiscard]] std::vector<TileUpdate> updates_to_do(const std::vector<TileWork>& works);
+/// Indices of the updates, most work first, so that threads end together.
+[[nodiscard]] std::vector<std::size_t> by_work(const std::vector<TileUpdate>& updates,
+                                               const std::vector<TileWork>& works);
+/// The update of a tile, if there is one. `updates`: in the order of their tiles.
+[[nodiscard]] const TileUpdate* find_update(const std::vector<TileUpdate>& updates, std::size_t tile);
+
 }  // namespace relook

@@ -33,14 +33,14 @@ NodeRecord& Compilation::editable_record(const std::string& node) {
   const auto [record, is_new] = index_.nodes.try_emplace(node);
   if (!is_new)
     note(node, record->second);
-  else if (history_ == History::noted)
+  else if (notes_history_)
     old_nodes_.try_emplace(node, std::nullopt);
   return record->second;
 }
 
 /// Before the first change of a node that was there.
 void Compilation::note(const std::string& node, const NodeRecord& record) {
-  if (history_ == History::noted) old_nodes_.try_emplace(node, record);
+  if (notes_history_) old_nodes_.try_emplace(node, record);
 }
 
 void Compilation::update_nodes(const Entities& entities) {
@@ -260,7 +260,7 @@ ObjectId Compilation::object_slot(const std::string& node, std::uint32_t primiti
 void Compilation::set_object(ObjectId id, Object value) {
   Object& now = scene_.objects[id.index()];
   if (now == value) return;
-  if (history_ == History::noted) old_objects_.try_emplace(id, now);
+  if (notes_history_) old_objects_.try_emplace(id, now);
   now = std::move(value);
 }
 

@@ -38,36 +38,37 @@ std::vector<CompiledEntity> all_entities(const LookDocument& document) {
 SceneDelta Compilation::run(const std::vector<TouchedEntity>& touched) {
   check_root();
   for (const TouchedEntity& entity : touched) check_name(entity);
-  return compile(with_users(touched));
+  old_order_ = scene_.light_order;
+  try {
+    compile(with_users(touched));
+    return delta();
+  } catch (...) {
+    roll_back();
+    throw;
+  }
 }
 
-SceneDelta Compilation::run(const std::vector<CompiledEntity>& entities) {
+void Compilation::run_first(const std::vector<CompiledEntity>& entities) {
+  notes_history_ = false;
   require(std::ranges::is_sorted(entities, {}, &Entity::place), "entities come in the order of their places");
   check_root();
   for (const Entity& entity : entities) check_name(entity.place);
-  return compile(entities);
+  compile(entities);
 }
 
-SceneDelta Compilation::compile(const Entities& entities) {
-  old_order_ = scene_.light_order;
+void Compilation::compile(const Entities& entities) {
   ++index_.runs;
-  try {
-    for (const Entity& entity : entities) check_entity(entity);
-    for (const Entity& entity : entities)
-      if (entity.is_touched && entity.place.section == "extensions") check_variants();
-    for (const Entity& entity : entities) {
-      if (entity.place.section == "materials" && entity.value != nullptr) update_material(entity);
-      if (entity.place.section == "scene") update_scene_entry();
-    }
-    update_nodes(entities);
-    for (const Entity& entity : entities)
-      if (entity.is_touched) update_references(entity);
-    check_camera();
-    return delta();
-  } catch (...) {
-    if (history_ == History::noted) roll_back();
-    throw;
+  for (const Entity& entity : entities) check_entity(entity);
+  for (const Entity& entity : entities)
+    if (entity.is_touched && entity.place.section == "extensions") check_variants();
+  for (const Entity& entity : entities) {
+    if (entity.place.section == "materials" && entity.value != nullptr) update_material(entity);
+    if (entity.place.section == "scene") update_scene_entry();
   }
+  update_nodes(entities);
+  for (const Entity& entity : entities)
+    if (entity.is_touched) update_references(entity);
+  check_camera();
 }
 
 void Compilation::fail(const std::string& pointer, const std::string& what) const {
@@ -155,7 +156,7 @@ void Compilation::update_references(const Entity& entity) {
       if (target == Target::cameras || target == Target::variants) return;
       references.push_back({std::string(section_name(static_cast<Section>(target))), name.get<std::string>()});
     });
-  if (history_ == History::noted) {
+  if (notes_history_) {
     const auto old = index_.references.find(entity.place);
     old_references_.try_emplace(entity.place,
                                 old == index_.references.end() ? std::vector<TouchedEntity>() : old->second);

@@ -54,20 +54,17 @@ struct CompiledEntity {
 /// Every entity of the document in the order of their places, for a compilation from scratch.
 [[nodiscard]] std::vector<CompiledEntity> all_entities(const LookDocument& document);
 
-/// Whether a compilation notes what was there before. One from scratch need not: an error ends its scene.
-enum class History : std::uint8_t { noted, none };
-
 class Compilation {
  public:
   Compilation(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index,
-              std::string_view file, History history = History::noted)
-      : document_(document), scene_(scene), index_(index), context_{document, pyramids, file}, history_(history) {}
+              std::string_view file)
+      : document_(document), scene_(scene), index_(index), context_{document, pyramids, file} {}
 
   /// What was touched and its users. Throws InputError with scene and index as before.
   SceneDelta run(const std::vector<TouchedEntity>& touched);
-  /// Entities of increasing places, without users as yet. Without history, an error leaves scene and index unfinished,
-  /// and no delta is known.
-  SceneDelta run(const std::vector<CompiledEntity>& entities);
+  /// Entities of a new scene, of increasing places and without users as yet. Notes nothing of what was there before: an
+  /// error ends the scene.
+  void run_first(const std::vector<CompiledEntity>& entities);
 
  private:
   using Entity = CompiledEntity;
@@ -81,7 +78,7 @@ class Compilation {
   // compile_scene.cpp
   void check_root() const;
   void check_name(const TouchedEntity& entity) const;
-  SceneDelta compile(const Entities& entities);
+  void compile(const Entities& entities);
   [[nodiscard]] Entities with_users(const std::vector<TouchedEntity>& touched) const;
   [[nodiscard]] const Json* value_of(const TouchedEntity& entity) const;
   void check_entity(const Entity& entity) const;
@@ -118,7 +115,7 @@ class Compilation {
   Scene& scene_;
   SceneIndex& index_;
   CompileContext context_;
-  History history_;
+  bool notes_history_ = true;  // of what was there before
 
   std::vector<std::string> adopted_;  // nodes with another parent than before
   // What was there before, for the delta and for rolling back.

@@ -33,9 +33,9 @@ SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<Pyr
   std::vector<CompiledEntity> materials, others;
   for (CompiledEntity& entity : all_entities(document_))
     (entity.place.section == "materials" ? materials : others).push_back(std::move(entity));
-  (void)Compilation(document_, *pyramids_, scene_, *index_, document_.file, History::none).run(materials);
+  Compilation(document_, *pyramids_, scene_, *index_, document_.file).run_first(materials);
   scene_.materials.emplace_back();
-  (void)Compilation(document_, *pyramids_, scene_, *index_, document_.file, History::none).run(others);
+  Compilation(document_, *pyramids_, scene_, *index_, document_.file).run_first(others);
 }
 
 std::string SceneState::parent_of(std::string_view node) const {
