@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "edit/patch.h"
+#include "scene/gltf_write.h"
 #include "scene/look_names.h"
 
 namespace relook {
@@ -30,7 +31,10 @@ std::string file_name_of(const std::string& image, const Bytes& bytes) {
   }
   constexpr std::size_t kHashDigits = 16, kLongest = 64;
   const std::string_view text = text_of(bytes);
-  const char* extension = text.starts_with("\x89PNG") ? ".png" : text.starts_with("\xFF\xD8") ? ".jpg" : "";
+  const char* extension = text.starts_with("\x89PNG")    ? ".png"
+                          : text.starts_with("\xFF\xD8") ? ".jpg"
+                          : text.starts_with("glTF")     ? ".glb"
+                                                         : "";
   return name.substr(0, kLongest) + "-" + hash128(bytes).substr(0, kHashDigits) + extension;
 }
 
@@ -45,6 +49,7 @@ class Differ {
       diff_section(section);
     diff({"scene"}, before_.look["scene"], after_.look["scene"]);
     remove_rest();
+    bring_geometry();
     warn();
     result_.draft.steps.push_back({{"name", before_.file + " to " + after_.file}, {"edit", std::move(edit_)}});
     return std::move(result_);
@@ -138,7 +143,8 @@ class Differ {
     add_operation("add", {"images", name}, {{"uri", file}});
   }
 
-  /// Puts the name of the geometry in `before_` into a mesh of `after_`. False: unknown, and shown by no node.
+  /// Puts the name that its geometry has in `before_`, or will have, into a mesh of `after_`. False: unknown, and shown
+  /// by no node.
   bool name_geometry(const std::string& mesh, Json& value) {
     const auto& known = before_.assets->mesh_primitives;
     const std::vector<MeshId>& wanted = after_.assets->mesh_primitives.at(value[kGeometry].get<std::string>());
@@ -154,13 +160,44 @@ class Differ {
       value[kGeometry] = found->first;
       return true;
     }
-    for (const Json& node : after_.look["nodes"])
-      if (node.value("mesh", Json()) == mesh)
-        throw InputError(after_.file, "",
-                         "mesh \"" + mesh + "\" has geometry that is not in " + before_.file +
-                             ", which no journal can say: a journal can only add whole files, as {\"asset\": FILE}");
+    const bool is_shown =
+        std::ranges::any_of(after_.look["nodes"], [&](const Json& node) { return node.value("mesh", Json()) == mesh; });
+    if (is_shown) {
+      MeshToWrite& brought = geometry_.emplace_back(mesh, value["primitives"].size());
+      for (const MeshId id : wanted) brought.primitives.push_back(&after_.assets->meshes[id.index()]);
+      value[kGeometry] = carrier_ + "/" + mesh;
+      return true;
+    }
     result_.draft.warnings.push_back("mesh \"" + mesh + "\" is left out: no node shows it");
     return false;
+  }
+
+  /// A node's name under which a file with geometry can be merged: nothing is called like what is below it.
+  [[nodiscard]] std::string carrier() const {
+    return unique_name("geometry", [&](const std::string& candidate) {
+      const std::string below = candidate + "/";
+      const auto has_below = [&](const auto& named) {
+        const auto next = named.lower_bound(below);
+        return next != named.end() && next->first.starts_with(below);
+      };
+      const auto is_taken = [&](const LookDocument& document) {
+        return document.look["nodes"].contains(candidate) || has_below(document.assets->mesh_primitives) ||
+               has_below(document.look["meshes"].get_ref<const Json::object_t&>());
+      };
+      return is_taken(before_) || is_taken(after_);
+    });
+  }
+
+  /// Geometry comes with the file of a node that the step adds before all else and removes after it, meshes included.
+  void bring_geometry() {
+    if (geometry_.empty()) return;
+    auto bytes = std::make_shared<const Bytes>(glb_of(geometry_));
+    const std::string file = folder_ + "/" + file_name_of("geometry", *bytes);
+    result_.files.push_back({file, std::move(bytes)});
+    const Tokens node = {"nodes", carrier_};
+    edit_.insert(edit_.begin(), Json{{"op", "add"}, {"path", pointer_text(node)}, {"value", {{"asset", file}}}});
+    add_operation("remove", node);
+    for (const MeshToWrite& mesh : geometry_) add_operation("remove", {"meshes", carrier_ + "/" + mesh.name});
   }
 
   void check_instances(const std::string& node) const {
@@ -196,7 +233,7 @@ class Differ {
       std::vector<Json> found{document.look.value("extensions", Json())};
       for (const Json& mesh : document.look["meshes"])
         for (const Json& primitive : mesh.value("primitives", Json::array()))
-          found.push_back(primitive.value("extensions", Json()));
+          if (primitive.contains("extensions")) found.push_back(primitive["extensions"]);
       return found;
     };
     if (variants(before_) != variants(after_))
@@ -206,6 +243,8 @@ class Differ {
 
   const LookDocument &before_, &after_;
   std::string folder_;
+  std::string carrier_ = carrier();    // node that brings geometry
+  std::vector<MeshToWrite> geometry_;  // that only `after_` has
   Json edit_ = Json::array();
   DiffDraft result_;
 };

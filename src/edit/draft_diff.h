@@ -8,7 +8,7 @@
 
 namespace relook {
 
-/// An image that the step brings in, to be written below the journal's folder.
+/// An image, or geometry as .glb, that the step brings in, to be written below the journal's folder.
 struct DraftFile {
   std::string name;  // relative to that folder
   std::shared_ptr<const Bytes> bytes;
@@ -20,8 +20,8 @@ struct DiffDraft {
 };
 
 /// The step after which `before` looks like `after`. `folder`: for files, relative to the journal's. Cameras and
-/// variants, which no journal edits, are named in warnings. Throws InputError for what else it cannot say: geometry
-/// that `before` does not have, instances that differ.
+/// variants, which no journal edits, are named in warnings. Throws InputError for what else it cannot say:
+/// instances that differ.
 [[nodiscard]] DiffDraft draft_diff(const LookDocument& before, const LookDocument& after, const std::string& folder);
 
 }  // namespace relook

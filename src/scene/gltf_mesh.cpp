@@ -66,10 +66,13 @@ std::vector<float> attribute(const Source& source, std::string_view semantic, co
   return values;
 }
 
-/// Unit vector, or zero when there is no direction in it.
+/// Unit vector, or zero when there is no direction in it. What is unit but for rounding stays as it is: so what was
+/// read and is written comes back the same.
 Normal normalized(float x, float y, float z) {
+  constexpr double kRounding = 0x1p-22;  // of a squared length: three components rounded to 24 bits stay within 2^-23
   const double dx = static_cast<double>(x), dy = static_cast<double>(y), dz = static_cast<double>(z);
-  const double length = std::sqrt(dx * dx + dy * dy + dz * dz);
+  const double squared = dx * dx + dy * dy + dz * dz, length = std::sqrt(squared);
+  if (std::abs(squared - 1) <= kRounding) return {x, y, z};
   if (length < 1e-12) return {0, 0, 0};
   return {static_cast<float>(dx / length), static_cast<float>(dy / length), static_cast<float>(dz / length)};
 }
