@@ -1,7 +1,6 @@
 #include "engine/exr_tiles.h"
 
 #include <half.h>
-#include <libdeflate.h>
 #include <openexr.h>
 
 #include <algorithm>
@@ -9,18 +8,26 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/vector_clones.h"
 #include "engine/half_bits.h"
 #include "trace/ray_tree.h"
 
 namespace relook {
 namespace {
 
-/// Level 4 makes files 4 % smaller and takes half as long again (measured on garden).
-constexpr int kDeflateLevel = 1;
-
-struct FreeCompressor {
-  void operator()(libdeflate_compressor* compressor) const { libdeflate_free_compressor(compressor); }
-};
+/// Even bytes first, then odd ones; each as its difference from the one before, offset by 128.
+RELOOK_VECTOR_CLONES
+void split_bytes(const unsigned char* raw, std::size_t size, unsigned char* split) {
+  constexpr unsigned kOffset = 128;
+  const std::size_t odd_bytes = size / 2, even_bytes = size - odd_bytes;
+  for (std::size_t i = 1; i < even_bytes; ++i)
+    split[i] = static_cast<unsigned char>(raw[2 * i] - raw[2 * i - 2] + kOffset);
+  unsigned char* odd = split + even_bytes;
+  for (std::size_t i = 1; i < odd_bytes; ++i)
+    odd[i] = static_cast<unsigned char>(raw[2 * i + 1] - raw[2 * i - 1] + kOffset);
+  if (size > 0) split[0] = raw[0];
+  if (odd_bytes > 0) odd[0] = static_cast<unsigned char>(raw[1] - raw[2 * even_bytes - 2] + kOffset);
+}
 
 static_assert(std::endian::native == std::endian::little, "OpenEXR files are little-endian");
 
@@ -65,46 +72,12 @@ float stored_value(float value, PixelFormat format) {
   return stored;
 }
 
-struct TileCompressor::Impl {
- public:
-  Impl() : compressor_(libdeflate_alloc_compressor(kDeflateLevel)) {
-    if (!compressor_) throw std::bad_alloc();
-  }
-  [[nodiscard]] Bytes zlib(const std::vector<unsigned char>& data) {
-    Bytes packed(libdeflate_zlib_compress_bound(compressor_.get(), data.size()));
-    const std::size_t packed_size =
-        libdeflate_zlib_compress(compressor_.get(), data.data(), data.size(), packed.data(), packed.size());
-    require(packed_size > 0, "deflate into a buffer of its own bound succeeds");
-    packed.resize(packed_size);
-    packed.shrink_to_fit();  // tiles of many layers are kept until the last is there
-    return packed;
-  }
-
- private:
-  std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor_;
-};
-
-TileCompressor::TileCompressor() : impl_(std::make_unique<Impl>()) {}
-TileCompressor::~TileCompressor() = default;
-
-/// OpenEXR's ZIP: even bytes first, then odd ones; differences of neighbours offset by 128; deflate. Raw when that is
-/// not smaller, which readers tell by the size.
-Bytes TileCompressor::zip(const std::vector<unsigned char>& raw) {
-  const std::size_t odd_bytes = raw.size() / 2, even_bytes = raw.size() - odd_bytes;
-  std::vector<unsigned char> halves(raw.size()), split(raw.size());
-  unsigned char* even = halves.data();
-  unsigned char* odd = even + even_bytes;
-  for (std::size_t i = 0; i < odd_bytes; ++i) {
-    even[i] = raw[2 * i];
-    odd[i] = raw[2 * i + 1];
-  }
-  if (even_bytes > odd_bytes) even[odd_bytes] = raw.back();
-  split[0] = halves[0];
-  for (std::size_t i = 1; i < split.size(); ++i) split[i] = static_cast<unsigned char>(halves[i] - halves[i - 1] + 128);
-
-  Bytes packed = impl_->zlib(split);
+Bytes TileCompressor::zip(std::span<const unsigned char> raw) {
+  split_.resize(raw.size());
+  split_bytes(raw.data(), raw.size(), split_.data());
+  Bytes packed = deflater_.zlib(split_);
   if (packed.size() < raw.size()) return packed;
-  const BytesView bytes = std::as_bytes(std::span(raw));
+  const BytesView bytes = std::as_bytes(raw);
   return {bytes.begin(), bytes.end()};
 }
 

@@ -3,13 +3,13 @@
 // OpenEXR's own writer loses the last write error.
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/files.h"
+#include "engine/deflate.h"
 
 namespace relook {
 
@@ -28,14 +28,13 @@ using ExrAttributes = std::vector<std::pair<std::string, std::string>>;
 /// Compresses tiles; one per thread.
 class TileCompressor {
  public:
-  TileCompressor();
-  ~TileCompressor();
-  /// `raw`: row by row, within a row channel by channel in the order of their names' bytes.
-  [[nodiscard]] Bytes zip(const std::vector<unsigned char>& raw);
+  /// OpenEXR's ZIP; `raw` itself when that is not smaller, which readers tell by the size. `raw`: row by row, within a
+  /// row channel by channel in the order of their names' bytes.
+  [[nodiscard]] Bytes zip(std::span<const unsigned char> raw);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  Deflater deflater_;
+  std::vector<unsigned char> split_;
 };
 
 /// The bytes of a file. `tiles`: compressed, row by row.

@@ -1,7 +1,6 @@
 #include "engine/frame_tiles.h"
 
 #include <half.h>
-#include <libdeflate.h>
 #include <openexr.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "engine/deflate.h"
 #include "trace/ray_tree.h"
 
 namespace relook {
@@ -112,13 +112,8 @@ std::vector<unsigned char> FrameTiles::unpacked(std::size_t tile) const {
     std::memcpy(raw.data(), chunk.data(), raw_bytes);
     return raw;
   }
-  const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor(
-      libdeflate_alloc_decompressor(), libdeflate_free_decompressor);
-  if (!decompressor) throw std::bad_alloc();
   std::vector<unsigned char> split(raw_bytes);
-  if (libdeflate_zlib_decompress(decompressor.get(), chunk.data(), chunk.size(), split.data(), raw_bytes, nullptr) !=
-      LIBDEFLATE_SUCCESS)
-    throw InputError(file_, "tile " + std::to_string(tile), "damaged");
+  if (!inflate_zlib(chunk, split)) throw InputError(file_, "tile " + std::to_string(tile), "damaged");
   // Differences, first those of the bytes at even places.
   unsigned char value = 128;
   const unsigned char* next = split.data();

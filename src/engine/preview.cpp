@@ -1,6 +1,5 @@
 #include "engine/preview.h"
 
-#include <isa-l/igzip_lib.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -12,6 +11,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/pool.h"
+#include "engine/deflate.h"
 
 namespace relook {
 namespace {
@@ -81,28 +82,6 @@ unsigned char display_code(float value) {
 
 constexpr std::uint32_t kBandRows = 16;
 
-/// Deflate blocks that end on a byte and are not the last of their stream.
-Bytes deflate_blocks(std::vector<unsigned char>& rows) {
-  constexpr std::size_t kMostOverhead = 1024;  // beyond stored blocks
-  Bytes packed(rows.size() + rows.size() / 64 + kMostOverhead);
-  std::vector<std::uint8_t> memory(ISAL_DEF_LVL1_DEFAULT);
-  isal_zstream stream{};
-  isal_deflate_stateless_init(&stream);
-  stream.level = 1;
-  stream.level_buf = memory.data();
-  stream.level_buf_size = static_cast<std::uint32_t>(memory.size());
-  stream.flush = FULL_FLUSH;
-  stream.end_of_stream = 0;
-  stream.next_in = rows.data();
-  stream.avail_in = static_cast<std::uint32_t>(rows.size());
-  stream.next_out = reinterpret_cast<std::uint8_t*>(packed.data());
-  stream.avail_out = static_cast<std::uint32_t>(packed.size());
-  const bool is_whole = isal_deflate_stateless(&stream) == COMP_OK && stream.avail_in == 0;
-  require(is_whole, "deflate into a buffer of its own bound succeeds");
-  packed.resize(packed.size() - stream.avail_out);
-  return packed;
-}
-
 }  // namespace
 
 PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height, std::shared_ptr<const DisplayView> view)
@@ -171,11 +150,13 @@ std::vector<unsigned char> PreviewEncoder::filtered_rows(std::size_t band) const
 }
 
 Bytes PreviewEncoder::png() {
+  Pool<Deflater> deflaters;
   parallel_for(bands_.size(), [&](std::size_t i) {
     if (!bands_[i].is_stale) return;
-    std::vector<unsigned char> rows = filtered_rows(i);
+    const std::vector<unsigned char> rows = filtered_rows(i);
     const uLong checksum = adler32(1, rows.data(), static_cast<uInt>(rows.size()));
-    bands_[i] = {false, deflate_blocks(rows), static_cast<std::uint32_t>(checksum)};
+    const auto deflater = deflaters.take([] { return std::make_unique<Deflater>(); });
+    bands_[i] = {false, deflater->blocks(rows), static_cast<std::uint32_t>(checksum)};
   });
   Bytes stream;
   for (const int value : {0x78, 0x01}) stream.push_back(static_cast<std::byte>(value));  // zlib: 32 KB window, fastest
