@@ -86,14 +86,16 @@ void note_ratio(const BenchOptions& options, const PaperRow& row, const char* co
 void print_row(const BenchOptions& options, const PaperRow& paper, const ColorTimes& times, double full_seconds,
                double bandwidth) {
   constexpr double kPixelBytes = 4 * sizeof(Rgba);  // colour and pixel of a sample, each read and written
-  const double moved = times.column_bytes + times.samples * kPixelBytes;
+  constexpr double kWedge = 25, kMostWedge = 3;
+  const double moved = (times.column_bytes + times.samples * kPixelBytes) / times.later / bandwidth;
+  const double wedge = (times.first + (kWedge - 1) * times.later) / times.first;
   std::printf(
-      "%-26s %8.0f %8.2f %7.0f %8.2f %7.0f %8.2f %7.0f %8.2f %7.0f %6.0f / %.0f / %.0f / %-6.0f %6.1f %6.0f%%\n",
+      "%-26s %8.0f %8.2f %7.0f %8.2f %7.0f %8.2f %7.0f %8.2f %7.0f %6.0f / %.0f / %.0f / %-6.0f %6.1f %6.0f%% %6.1f\n",
       paper.step, times.samples, times.from_trees * 1e3, full_seconds / times.from_trees, times.first * 1e3,
       full_seconds / times.first, times.chosen * 1e3, full_seconds / times.chosen, times.later * 1e3,
       full_seconds / times.later, kPaperFull / paper.ray_paths, kPaperFull / paper.all_ray_trees,
-      kPaperFull / paper.color_trees, kPaperFull / paper.compressed, times.column_bytes / times.samples,
-      100 * moved / times.later / bandwidth);
+      kPaperFull / paper.color_trees, kPaperFull / paper.compressed, times.column_bytes / times.samples, 100 * moved,
+      wedge);
   note_ratio(options, paper, "from ray trees, nothing kept (paper: from ray paths)", full_seconds / times.from_trees,
              paper.ray_paths);
   note_ratio(options, paper, "first, nothing kept (paper: selection and colour trees)", full_seconds / times.first,
@@ -101,6 +103,10 @@ void print_row(const BenchOptions& options, const PaperRow& paper, const ColorTi
   note_ratio(options, paper, "first, colour trees kept (paper: the same)", full_seconds / times.chosen,
              paper.selection + paper.color_trees);
   note_ratio(options, paper, "later (paper: compressed)", full_seconds / times.later, paper.compressed);
+  options.note("Table 3, colour rows: compressed colour trees", paper.step, "moved / a plain copy", 100 * moved, "%",
+               "", Goal{50});
+  options.note("Table 3, colour rows: compressed colour trees", paper.step, "25 values / one", wedge, "", "",
+               Goal{kMostWedge, true});
   options.note("Table 3, colour rows: compressed colour trees", paper.step, "bytes a sample",
                times.column_bytes / times.samples, "", "310 to 516 (whole trees)", Goal{160, true});
 }
@@ -114,15 +120,13 @@ void print_colors(const BenchOptions& options, const Image& image, const Journal
   const double bandwidth = copy_bandwidth();
   std::printf(
       "\nTable 3, colour rows: milliseconds and full render / edit, from ray trees (no colour trees kept), for the "
-      "first "
-      "edit of a parameter\n(finding and compressing its samples, once), for the first of one that was chosen before "
-      "(--params), for later ones (fastest of %d). Bytes: "
-      "columns a "
-      "sample. Moved: columns and pixels of later edits, share of a plain copy (%.0f GB/s read and written; to reach: "
-      "50 %%)\n",
+      "first edit of a parameter\n(finding and compressing its samples, once), for the first of one that was chosen "
+      "before (--params), for later ones (fastest of %d). Bytes: columns a sample.\nMoved: columns and pixels of later "
+      "edits, share of a plain copy (%.0f GB/s read and written; to reach: 50 %%). Wedge: 25 values / one (a first "
+      "edit and\n24 later ones; to reach: 3)\n",
       kRuns, bandwidth * 1e-9);
-  std::printf("%-26s %8s %8s %7s %8s %7s %8s %7s %8s %7s %28s %6s %7s\n", "step", "samples", "trees", "x", "first", "x",
-              "chosen", "x", "later", "x", "paper: paths/trees/color/compr.", "bytes", "moved");
+  std::printf("%-26s %8s %8s %7s %8s %7s %8s %7s %8s %7s %28s %6s %7s %6s\n", "step", "samples", "trees", "x", "first",
+              "x", "chosen", "x", "later", "x", "paper: paths/trees/color/compr.", "bytes", "moved", "wedge");
   for (const JournalStep& step : journal.steps)
     for (const PaperRow& paper : kPaperRows)
       if (step.name == paper.step) {
