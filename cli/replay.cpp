@@ -57,6 +57,7 @@ std::uint64_t samples_in(const Image& image, const std::vector<std::size_t>& til
 }  // namespace
 
 ExitCode run_replay(const Arguments& arguments, Console& console) {
+  if (arguments.structures.memory_bytes) give_back_large_blocks();
   const std::string& cache = arguments.inputs[0];
   const std::vector<Journal> journals = read_journals(arguments);
   const std::shared_ptr<const DisplayView> view = display_view_of_environment();

@@ -101,6 +101,17 @@ INSTANTIATE_TEST_SUITE_P(
                     BudgetCase{TestScene::study, 1, 1, false, 0.6}, BudgetCase{TestScene::spheres, 1, 0.3, true, 0.2},
                     BudgetCase{TestScene::cards, 4, 1, false, 0.8}));
 
+TEST(Eviction, gives_memory_back) {
+  ResidencyOptions options;
+  options.process_bytes = [] { return std::uint64_t{0}; };
+  options.memory_bytes = 0;
+  options.spill_folder = testing::TempDir();
+  Replayer replayer = replayer_of(TestScene::spheres, {4, 5, 0}, {}, options);
+  static_cast<void>(replayer.step({}, "nothing changes", "."));
+  EXPECT_EQ(replayer.resident().ray_trees, 0U);
+  EXPECT_EQ(replayer.resident().color_trees, 0U);
+}
+
 TEST(ObjectRays, find_every_hit_of_every_tree_again) {
   for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study}) {
     const SceneState state = test_scene(scene, 80, 60);

@@ -23,4 +23,10 @@ std::uint64_t resident_set_bytes() {
 
 void trim_allocator() { malloc_trim(0); }
 
+void give_back_large_blocks() {
+  constexpr int kLarge = 128 << 10, kMostBlocks = 32 << 10;  // a process may map 65,530 by default
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_MMAP_MAX, kMostBlocks);
+}
+
 }  // namespace relook

@@ -17,7 +17,17 @@ void keep_to_the_end(T value) {
   kept.push_back(std::make_unique<T>(std::move(value)));
 }
 
+/// Empties a vector and gives its memory back: `vector = {}` keeps it.
+template <class T>
+void give_back(std::vector<T>& vector) {
+  std::vector<T>().swap(vector);
+}
+
 /// Gives back what is free inside of the allocator's own blocks.
 void trim_allocator();
+
+/// From now on blocks of 128 KiB and more go back to the system as they are freed. By itself glibc keeps ever larger
+/// ones (up to 32 MiB) inside of its own, where what is left around them is lost.
+void give_back_large_blocks();
 
 }  // namespace relook

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "base/vector_clones.h"
@@ -89,7 +90,7 @@ void FrameEncoder::compress_taken() {
     if (taken_[tile].empty()) return;
     const auto compressor = compressors.take([] { return std::make_unique<TileCompressor>(); });
     chunks_[tile] = compressor->zip(taken_[tile]);
-    taken_[tile] = {};
+    give_back(taken_[tile]);
   });
 }
 

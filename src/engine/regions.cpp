@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "engine/sampling.h"
 
@@ -101,7 +102,7 @@ void ImageRegions::add_pieces(std::size_t tiles) {
 }
 
 void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, double seconds) {
-  tile_sections_[tile] = {};
+  give_back(tile_sections_[tile]);
   for (std::size_t k = 0; k < tunnels.count(kRoot); ++k)
     enclose(tile_sections_[tile], tunnels.tunnel(kRoot, k).sections);
   tunnels_[tile] = std::move(tunnels);

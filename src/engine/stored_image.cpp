@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/byte_columns.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "engine/sampling.h"
 
@@ -84,8 +85,8 @@ void StoredImage::add_pieces() {
     columns.next(image_.trees[tile].hits);
   };
   trees.drop = [this](std::size_t tile) {
-    image_.trees[tile].first_hit = {};
-    image_.trees[tile].hits = {};
+    give_back(image_.trees[tile].first_hit);
+    give_back(image_.trees[tile].hits);
   };
   trees.may_be_missing = true;
   residency_.add_kind(PieceKind::ray_trees, image_.trees.size(), std::move(trees));
@@ -98,7 +99,7 @@ void StoredImage::add_pieces() {
   colors.unpack = [this](std::size_t tile, BytesView bytes) {
     ByteColumnsReader(bytes).next(image_.sample_colors[tile]);
   };
-  colors.drop = [this](std::size_t tile) { image_.sample_colors[tile] = {}; };
+  colors.drop = [this](std::size_t tile) { give_back(image_.sample_colors[tile]); };
   residency_.add_kind(PieceKind::sample_colors, image_.trees.size(), std::move(colors));
   for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) {
     note_hits(tile);
@@ -139,7 +140,7 @@ Resident StoredImage::resident() const {
     resident.ray_trees += hit_bytes(tile);
   }
   resident.tunnels = regions_.group_bytes() + regions_.tunnel_bytes();
-  for (const std::vector<Rgba>& colors : image_.sample_colors) resident.color_trees += colors.size() * sizeof(Rgba);
+  for (const std::vector<Rgba>& colors : image_.sample_colors) resident.color_trees += colors.capacity() * sizeof(Rgba);
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
   resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + resident.tunnels + frame;
   return resident;
@@ -175,10 +176,10 @@ void StoredImage::keep_hits(TileUpdate& update) {
     trees = with_hits_of(update, std::move(trees));
     note_hits(update.tile);
   }
-  update.hits = {};
-  update.first_hit = {};
+  give_back(update.hits);
+  give_back(update.first_hit);
   if (!update.shaded.empty()) keep_colors(update.tile, update.shaded, update.colors);
-  update.colors = {};
+  give_back(update.colors);
 }
 
 void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed) {
