@@ -16,7 +16,7 @@ Bytes Deflater::blocks(std::span<const unsigned char> data) { return run(data, f
 Bytes Deflater::run(std::span<const unsigned char> data, bool is_zlib) {
   constexpr std::size_t kMostOverhead = 1024;  // beyond stored blocks
   packed_.resize(data.size() + data.size() / 64 + kMostOverhead);
-  isal_zstream stream;
+  isal_zstream stream{};  // the size of the window, too: init leaves it as it is
   isal_deflate_stateless_init(&stream);
   stream.level = 1;
   stream.level_buf = memory_.data();
