@@ -18,18 +18,6 @@ RegionOptions region_options(const StructureOptions& structures) {
           structures.color_trees_percent / 100, structures.atoms};
 }
 
-ResidencyOptions residency_options(const Arguments& arguments, const std::filesystem::path& folder) {
-  ResidencyOptions options;
-  options.memory_bytes = arguments.structures.memory_bytes;
-  options.reserve_bytes = options.memory_bytes.value_or(0) / 16;
-  for (const EvictionPolicy policy : kEvictionPolicies)
-    if (policy_name(policy) == arguments.structures.policy) options.policy = policy;
-  options.spill_folder = arguments.spill.empty() ? folder : std::filesystem::path(arguments.spill);
-  if (arguments.structures.disk_bytes) options.disk_bytes = *arguments.structures.disk_bytes;
-  options.logs_accesses = !arguments.access_log.empty();
-  return options;
-}
-
 /// Of steps first..last of a journal; 0 is the frame before any of them. A drag or wedge has one more than entries.
 std::size_t frame_count(const Journal& journal, std::size_t first, std::size_t last) {
   std::size_t frames = first == 0 ? 1 : 0;
@@ -70,8 +58,8 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
 }  // namespace
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, OpenedCache opened,
-                       const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
-                       const std::filesystem::path& folder)
+                       std::unique_ptr<Residency> residency, const CacheFacts& cache,
+                       const std::shared_ptr<const DisplayView>& view, const std::filesystem::path& folder)
     : arguments_(arguments),
       console_(console),
       journal_(journal),
@@ -79,7 +67,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view,
               run_hash(arguments, journal, view.get()), arguments.fresh),
       replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
-                residency_options(arguments, folder)) {
+                std::move(residency)) {
   report_.scene = replayer_.state().document().file;
   report_.scene_hash = cache.scene_hash;
   report_.cache_folder = arguments.inputs[0];

@@ -29,9 +29,10 @@ struct CacheFacts {
 /// Replays one journal into one run folder.
 class JournalRun {
  public:
+  /// `residency`: null, or with which the cache was opened.
   JournalRun(const Arguments& arguments, Console& console, const Journal& journal, OpenedCache opened,
-             const CacheFacts& cache, const std::shared_ptr<const DisplayView>& view,
-             const std::filesystem::path& folder);
+             std::unique_ptr<Residency> residency, const CacheFacts& cache,
+             const std::shared_ptr<const DisplayView>& view, const std::filesystem::path& folder);
 
   /// Builds their colour trees; no others will be kept.
   void choose_parameters(const std::vector<ParameterSet>& sets) {
@@ -63,7 +64,7 @@ class JournalRun {
   const Arguments& arguments_;
   Console& console_;
   const Journal& journal_;
-  RunFolder folder_;  // there before the replayer spills into it
+  RunFolder folder_;
   Replayer replayer_;
   RunReport report_;
   std::uint64_t pixels_different_ = 0, ray_trees_rebuilt_ = 0;

@@ -55,9 +55,9 @@ CacheContent load_mended_cache(const std::string& cache) {
   return content;
 }
 
-OpenedCache open_cache(const std::string& cache, bool mends) {
+OpenedCache open_cache(const std::string& cache, bool mends, Residency* residency) {
   OpenedCache opened;
-  require_sound(open_cache(cache, mends, opened), cache);
+  require_sound(open_cache(cache, mends, opened, residency), cache);
   return opened;
 }
 

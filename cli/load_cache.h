@@ -22,8 +22,8 @@ void require_sound(const CacheAnswer& answer, const std::string& cache);
 
 /// With what was damaged or missing traced again; refuses only damage that cannot be made good.
 [[nodiscard]] CacheContent load_mended_cache(const std::string& cache);
-/// As a replay starts from it. `mends`: see open_cache().
-[[nodiscard]] OpenedCache open_cache(const std::string& cache, bool mends);
+/// As a replay starts from it. `mends`, `residency`: see engine/cached_image.h.
+[[nodiscard]] OpenedCache open_cache(const std::string& cache, bool mends, Residency* residency = nullptr);
 /// One sentence a file.
 [[nodiscard]] std::vector<std::string> sentences(const CacheLosses& losses);
 

@@ -41,6 +41,22 @@ std::vector<Journal> read_journals(const Arguments& arguments) {
   return journals;
 }
 
+/// What --memory and --access-log ask for; null: nothing. The run folder is made to spill into.
+std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::filesystem::path& folder) {
+  const StructureOptions& structures = arguments.structures;
+  if (!structures.memory_bytes && arguments.access_log.empty()) return nullptr;
+  ResidencyOptions options;
+  options.memory_bytes = structures.memory_bytes;
+  options.reserve_bytes = options.memory_bytes.value_or(0) / 16;
+  for (const EvictionPolicy policy : kEvictionPolicies)
+    if (policy_name(policy) == structures.policy) options.policy = policy;
+  options.spill_folder = arguments.spill.empty() ? folder : std::filesystem::path(arguments.spill);
+  if (structures.disk_bytes) options.disk_bytes = *structures.disk_bytes;
+  options.logs_accesses = !arguments.access_log.empty();
+  if (arguments.spill.empty()) make_folders(folder);
+  return std::make_unique<Residency>(std::move(options));
+}
+
 /// For another run from the same state.
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
@@ -68,8 +84,11 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     if (has_several) folders.back() /= journal.name;
     RunFolder::refuse_foreign(folders.back());
   }
+  Json manifest;
+  require_sound(read_manifest(cache, manifest), cache);
   std::optional<TraceScope> reading(std::in_place, console.trace(), "read cache");
-  OpenedCache opened = open_cache(cache, !arguments.strict);
+  std::unique_ptr<Residency> residency = residency_of(arguments, folders.front());
+  OpenedCache opened = open_cache(cache, !arguments.strict, residency.get());
   std::vector<std::string> damage = sentences(opened.losses);
   for (std::string& sentence : damage) sentence = cache + ": " + sentence + "; traced again";
   console.warn(damage);
@@ -80,8 +99,6 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     throw Error(ExitCode::cache_mismatch, cache, "",
                 "the cache holds shadow counters of " + std::to_string(shadow_bits) +
                     " bits; preprocess again with --shadow-bits");
-  Json manifest;
-  require_sound(read_manifest(cache, manifest), cache);
   const CacheFacts facts{opened.scene_hash, cache_sizes(manifest), damage,
                          samples_in(opened.image, opened.losses.tiles)};
 
@@ -92,9 +109,14 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   checking.reset();
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
-    OpenedCache next = i + 1 < journals.size() ? copy_of(opened) : OpenedCache();
+    if (i > 0 && !opened.state) {  // pieces of the run before may be anywhere
+      residency = residency_of(arguments, folders[i]);
+      opened = open_cache(cache, !arguments.strict, residency.get());
+    }
+    OpenedCache next = i + 1 < journals.size() && !residency ? copy_of(opened) : OpenedCache();
     const std::vector<ParameterSet> chosen = chosen_parameters(*opened.state, arguments.structures.params);
-    JournalRun run(arguments, console, journals[i], std::exchange(opened, std::move(next)), facts, view, folders[i]);
+    JournalRun run(arguments, console, journals[i], std::exchange(opened, std::move(next)), std::move(residency), facts,
+                   view, folders[i]);
     if (!chosen.empty()) run.choose_parameters(chosen);
     pixels_different += run.run(i, journals.size());
     runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});

@@ -163,10 +163,11 @@ Change random_movement(const Json& look, const std::string& node, Dice& dice) {
   return change;
 }
 
-Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions, ResidencyOptions residency) {
+Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions,
+                     const ResidencyOptions& residency) {
   SceneState state = view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
   Image image = preprocessed(state.scene(), view);
-  return Replayer(std::move(state), std::move(image), regions, std::move(residency));
+  return Replayer(std::move(state), std::move(image), regions, std::make_unique<Residency>(residency));
 }
 
 }  // namespace relook

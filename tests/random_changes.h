@@ -64,6 +64,6 @@ struct Change {
 [[nodiscard]] Change random_movement(const Json& look, const std::string& node, Dice& dice);
 /// A replay of a small image of a scene.
 [[nodiscard]] Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions,
-                                   ResidencyOptions residency = {});
+                                   const ResidencyOptions& residency = {});
 
 }  // namespace relook

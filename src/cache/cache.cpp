@@ -27,13 +27,10 @@ struct PartFile {
   std::size_t group = 0;  // of Part::trees
 };
 
-std::size_t group_count(const Camera& camera) {
-  return (cache_tile_count(camera) + kTilesPerGroup - 1) / kTilesPerGroup;
-}
-
-std::vector<PartFile> parts_of(const Camera& camera) {
+std::vector<PartFile> parts_of(const CacheContent& content) {
   std::vector<PartFile> parts{{Part::look}, {Part::geometry}, {Part::textures}, {Part::frame}, {Part::paths}};
-  for (std::size_t group = 0; group < group_count(camera); ++group) parts.push_back({Part::trees, group});
+  for (std::size_t group = 0; group < cache_group_count(content.camera, content.samples); ++group)
+    parts.push_back({Part::trees, group});
   return parts;
 }
 
@@ -84,6 +81,7 @@ struct Reading {
   std::shared_ptr<Assets> assets = std::make_shared<Assets>();
   std::vector<std::size_t> hits_of_path;
   bool uses_trees = false;  // otherwise of trees nothing but the hash of the file is checked
+  CacheUsers users;
 };
 
 /// What is wrong with one file.
@@ -139,6 +137,10 @@ Finding read_part(const PartFile& part, Reading& reading) {
       if (is_sound || !is_hash_more_telling) throw;
     }
     check_sound(is_sound, "file hash mismatch");
+    if (part.part == Part::trees && reading.uses_trees && reading.users.tile) {
+      const TileGroup group = cache_group(reading.content.camera, reading.content.samples, part.group);
+      for (std::size_t tile = group.first; tile < group.last; ++tile) reading.users.tile(reading.content, tile);
+    }
   } catch (const CacheDamage& damage) {
     answer.fault = damage.fault;
     answer.detail = damage.what();
@@ -170,9 +172,9 @@ CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& cont
   for (const Finding& finding : findings) {
     losses.faults.push_back(finding.answer);
     const bool is_group = finding.part.part == Part::trees;
-    const std::size_t first = is_group ? finding.part.group * kTilesPerGroup : 0;
-    const std::size_t last = is_group ? std::min(first + kTilesPerGroup, all) : all;
-    for (std::size_t tile = first; tile < last; ++tile) tiles.insert(tile);
+    const TileGroup lost =
+        is_group ? cache_group(content.camera, content.samples, finding.part.group) : TileGroup{0, all};
+    for (std::size_t tile = lost.first; tile < lost.last; ++tile) tiles.insert(tile);
     if (finding.part.part == Part::paths) content.paths = PathTable();
   }
   content.frame.resize(std::size_t{content.camera.width} * content.camera.height);
@@ -206,9 +208,8 @@ std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& readin
   return findings;
 }
 
-/// Reads everything that can be read; what is wrong with it, in the order of the files. `use_scene`: see read_cache().
-std::vector<Finding> read_everything(const std::filesystem::path& path, Reading& reading,
-                                     const std::function<void(CacheContent&)>& use_scene = {}) {
+/// Reads everything that can be read; what is wrong with it, in the order of the files.
+std::vector<Finding> read_everything(const std::filesystem::path& path, Reading& reading) {
   reading.path = path;
   try {
     reading.manifest = load_manifest(path);
@@ -232,16 +233,19 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
     findings.push_back(
         {{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
 
-  const std::vector<PartFile> parts = parts_of(content.camera);
+  const std::vector<PartFile> parts = parts_of(content);
   std::vector<Finding> of_scene, of_image;
-  parallel_for(2, [&](std::size_t half) {
-    if (half == 1) {
-      of_image = read_image(parts, reading);
-      return;
-    }
+  const auto read_scene = [&] {
     of_scene = read_parts(std::span(parts).first(kFrame), reading);
-    if (use_scene && findings.empty() && std::ranges::none_of(of_scene, is_fault)) use_scene(content);
-  });
+    if (reading.users.scene && findings.empty() && std::ranges::none_of(of_scene, is_fault))
+      reading.users.scene(content);
+  };
+  if (reading.users.tile) {
+    read_scene();
+    of_image = read_image(parts, reading);
+  } else {
+    parallel_for(2, [&](std::size_t half) { half == 0 ? read_scene() : void(of_image = read_image(parts, reading)); });
+  }
   std::ranges::copy_if(of_scene, std::back_inserter(findings), is_fault);
   std::ranges::copy_if(of_image, std::back_inserter(findings), is_fault);
   return findings;
@@ -303,7 +307,7 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
   StagedFolder folder(path);
   folder.fill([&] {
     make_folders(folder.path() / kPartNames[static_cast<std::size_t>(Part::trees)]);
-    const std::vector<PartFile> parts = parts_of(content.camera);
+    const std::vector<PartFile> parts = parts_of(content);
     manifest.files.resize(parts.size());
     parallel_for(parts.size(), [&](std::size_t i) {
       manifest.files[i] = write_part(folder.path(), parts[i], content, manifest.identity);
@@ -316,9 +320,10 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content)
 }
 
 CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content, CacheLosses* losses,
-                       const std::function<void(CacheContent&)>& use_scene) {
+                       const CacheUsers& users) {
   Reading reading;
-  const std::vector<Finding> findings = read_everything(path, reading, use_scene);
+  reading.users = users;
+  const std::vector<Finding> findings = read_everything(path, reading);
   const auto fault =
       std::ranges::find_if(findings, [&](const Finding& finding) { return losses == nullptr || !is_loss(finding); });
   if (fault != findings.end()) return fault->answer;

@@ -59,13 +59,20 @@ struct CacheLosses {
   [[nodiscard]] bool empty() const { return faults.empty(); }
 };
 
+/// Who is called while a cache is being read. What they do to the content stays done.
+struct CacheUsers {
+  /// All but the image is there and sound: document, assets, pyramids and the plain values.
+  std::function<void(CacheContent&)> scene;
+  /// The trees and colours of a tile are there and sound; they may be taken to where there is more room. Comes after
+  /// `scene`, for several tiles at once; the vectors of tiles keep their elements where they are.
+  std::function<void(CacheContent&, std::size_t tile)> tile;
+};
+
 /// Reads and verifies every hash and every index. On any fault `content` is untouched; with `losses`, files that are
 /// missing or do not have their hash are none if they can be made good: then the tiles of `losses` have no trees and no
-/// colours, and a lost path table is empty. `use_scene` is called while the image is still read, when all else is there
-/// and sound: document, assets, pyramids and the plain values. What it does to them stays done.
+/// colours, and a lost path table is empty.
 [[nodiscard]] CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content,
-                                     CacheLosses* losses = nullptr,
-                                     const std::function<void(CacheContent&)>& use_scene = {});
+                                     CacheLosses* losses = nullptr, const CacheUsers& users = {});
 
 /// Every byte and every invariant; one line per finding, empty if the cache is sound. Goes on after the first fault.
 struct CacheReport {

@@ -12,9 +12,9 @@
 namespace relook {
 namespace {
 
-std::pair<std::size_t, std::size_t> tiles_of(std::size_t group, const Camera& camera) {
-  const std::size_t first = group * kTilesPerGroup;
-  return {first, std::min(first + kTilesPerGroup, cache_tile_count(camera))};
+std::size_t tiles_per_group(std::uint32_t samples) {
+  constexpr std::size_t kGroupSamples = 32 * kTileSize * kTileSize;
+  return std::max<std::size_t>(kGroupSamples / (std::size_t{kTileSize} * kTileSize * samples), 1);
 }
 
 struct Rect {
@@ -62,6 +62,15 @@ std::size_t cache_tile_count(const Camera& camera) {
   return std::size_t{(camera.width + kTileSize - 1) / kTileSize} * ((camera.height + kTileSize - 1) / kTileSize);
 }
 
+std::size_t cache_group_count(const Camera& camera, std::uint32_t samples) {
+  return (cache_tile_count(camera) + tiles_per_group(samples) - 1) / tiles_per_group(samples);
+}
+
+TileGroup cache_group(const Camera& camera, std::uint32_t samples, std::size_t group) {
+  const std::size_t first = group * tiles_per_group(samples);
+  return {first, std::min(first + tiles_per_group(samples), cache_tile_count(camera))};
+}
+
 std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile) {
   const Rect rect = tile_rect_of(camera, tile);
   return std::size_t{rect.x1 - rect.x0} * (rect.y1 - rect.y0) * samples;
@@ -85,7 +94,7 @@ Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheId
   std::vector<std::uint32_t> paths, primitives;
   std::vector<float> u, v;
   std::vector<Rgba> colors;
-  const auto [first, last] = tiles_of(group, content.camera);
+  const auto [first, last] = cache_group(content.camera, content.samples, group);
   for (std::size_t tile = first; tile < last; ++tile) {
     const TileTrees& trees = content.trees[tile];
     require(trees.paths.size() == cache_tile_samples(content.camera, content.samples, tile), "a tile has all samples");
@@ -191,7 +200,7 @@ GroupColumns read_columns(const ContainerReader& reader, std::uint64_t samples, 
 void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
                   std::span<const std::size_t> hits_of_path, CacheContent& content) {
   const ContainerReader reader(file, identity);
-  const auto [first, last] = tiles_of(group, content.camera);
+  const auto [first, last] = cache_group(content.camera, content.samples, group);
   std::uint64_t samples = 0;
   for (std::size_t tile = first; tile < last; ++tile)
     samples += cache_tile_samples(content.camera, content.samples, tile);

@@ -9,10 +9,13 @@
 
 namespace relook {
 
-/// Tiles of one trees/ file.
-inline constexpr std::size_t kTilesPerGroup = 32;
-
 [[nodiscard]] std::size_t cache_tile_count(const Camera& camera);
+/// Tiles [first, last) of one trees/ file: up to 131,072 samples, at least one tile.
+struct TileGroup {
+  std::size_t first = 0, last = 0;
+};
+[[nodiscard]] std::size_t cache_group_count(const Camera& camera, std::uint32_t samples);
+[[nodiscard]] TileGroup cache_group(const Camera& camera, std::uint32_t samples, std::size_t group);
 /// Samples of a tile of the image.
 [[nodiscard]] std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile);
 

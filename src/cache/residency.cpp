@@ -32,7 +32,7 @@ std::string_view kind_name(PieceKind kind) {
   return "";
 }
 
-Residency::Residency(ResidencyOptions options) : options_(std::move(options)) {
+Residency::Residency(ResidencyOptions options) : options_(std::move(options)), trims_left_(kMostTrims) {
   if (is_limited() && !options_.spill_folder.empty() && options_.disk_bytes > 0)
     spill_ = std::make_unique<SpillFile>(options_.spill_folder, options_.disk_bytes);
   reserve_bytes_ = options_.reserve_bytes;

@@ -29,7 +29,6 @@ struct ResidencyOptions {
   std::uint64_t disk_bytes = ~std::uint64_t{0};
   bool logs_accesses = false;
   std::function<std::uint64_t()> process_bytes = resident_set_bytes;
-  bool tracks_pieces = false;  // without a limit, too: pieces may be missing
 };
 
 /// How the owner's data of one kind come and go. The functions are called for one tile at a time, those for different
@@ -77,13 +76,16 @@ class Residency {
 
   /// All pieces of the kind are missing then, whatever was there before.
   void add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler);
+  [[nodiscard]] bool has_kind(PieceKind kind) const { return !kinds_[static_cast<std::size_t>(kind)].pieces.empty(); }
   /// `bytes`: of what `list` offers. Not called while set otherwise.
   void set_others(std::function<std::uint64_t()> bytes, std::function<void(std::vector<Victim>&)> list);
 
   [[nodiscard]] EvictionPolicy policy() const { return options_.policy; }
   [[nodiscard]] bool is_limited() const { return options_.memory_bytes.has_value(); }
+  /// From now on, without a limit, too: pieces may be missing.
+  void track() { tracks_pieces_ = true; }
   /// Does anyone care about sizes, uses and what is missing?
-  [[nodiscard]] bool is_watched() const { return is_limited() || options_.logs_accesses || options_.tracks_pieces; }
+  [[nodiscard]] bool is_watched() const { return is_limited() || options_.logs_accesses || tracks_pieces_; }
 
   /// The piece has new content and is resident. May evict other pieces. `rebuild_seconds`: measured or estimated from
   /// what has been measured.
@@ -153,7 +155,8 @@ class Residency {
   double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
   std::vector<Candidate> candidates_;  // the next to leave last; made when needed, used up or for one change
   std::vector<Victim> victims_;
-  std::uint32_t trims_left_ = 0;  // in this change
+  std::uint32_t trims_left_;  // in this change
+  bool tracks_pieces_ = false;
   PieceCounts counts_;
   std::string log_;
 };

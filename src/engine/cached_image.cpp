@@ -1,11 +1,14 @@
 #include "engine/cached_image.h"
 
 #include <atomic>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "engine/image_pieces.h"
 #include "engine/render.h"
 #include "trace/path_cursor.h"
 
@@ -57,23 +60,22 @@ CacheContent cache_content(const SceneState& state, Image image, std::string sce
   return content;
 }
 
-std::string broken_hits(const Scene& scene, const Image& image) {
-  std::vector<std::vector<std::uint64_t>> limits;
-  limits.reserve(image.paths.size());
-  const PathLayout layout{scene.light_order.size(), image.view.shadow_bits};
-  for (std::size_t i = 0; i < image.paths.size(); ++i)
-    limits.push_back(triangles_hit(scene, image.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
-  std::atomic<bool> is_broken = false;
-  parallel_for(image.trees.size(), [&](std::size_t index) {
-    const TileTrees& tile = image.trees[index];
-    for (std::size_t sample = 0; sample < tile.paths.size(); ++sample) {
-      const std::vector<std::uint64_t>& limit = limits[tile.paths[sample].index()];
-      const std::span<const Hit> hits = tile.hits_of(sample);
-      for (std::size_t i = 0; i < hits.size(); ++i)
-        if (hits[i].primitive >= limit[i]) is_broken = true;
-    }
-  });
-  return is_broken ? "a hit names a triangle that its object does not have" : "";
+HitCheck::HitCheck(const Scene& scene, const PathTable& paths, std::uint32_t shadow_bits) {
+  most_.reserve(paths.size());
+  const PathLayout layout{scene.light_order.size(), shadow_bits};
+  for (std::size_t i = 0; i < paths.size(); ++i)
+    most_.push_back(triangles_hit(scene, paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
+}
+
+bool HitCheck::is_sound(const TileTrees& tile) const {
+  if (!has_hits(tile)) return true;
+  for (std::size_t sample = 0; sample < tile.paths.size(); ++sample) {
+    const std::vector<std::uint64_t>& most = most_[tile.paths[sample].index()];
+    const std::span<const Hit> hits = tile.hits_of(sample);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (hits[i].primitive >= most[i]) return false;
+  }
+  return true;
 }
 
 namespace {
@@ -137,20 +139,45 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   return answer;
 }
 
-CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened) {
+CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened, Residency* residency) {
   CacheContent content;
   CacheLosses losses;
   std::unique_ptr<SceneState> state;
   CacheAnswer of_scene;
-  const auto use_scene = [&](CacheContent& scene_part) { of_scene = compile(scene_part, state); };
-  if (CacheAnswer answer = read_cache(path, content, mends ? &losses : nullptr, use_scene);
+  std::once_flag is_prepared;
+  std::optional<HitCheck> check;
+  std::atomic<bool> is_broken = false;
+  CacheUsers users;
+  users.scene = [&](CacheContent& scene_part) { of_scene = compile(scene_part, state); };
+  if (residency != nullptr)
+    users.tile = [&](CacheContent& so_far, std::size_t tile) {
+      if (!state) return;
+      std::call_once(is_prepared, [&] {
+        check.emplace(state->scene(), so_far.paths, so_far.shadow_bits);
+        add_image_pieces(*residency, so_far.trees, so_far.sample_colors);
+      });
+      if (!check->is_sound(so_far.trees[tile])) is_broken = true;
+      note_trees(*residency, tile, so_far.trees[tile]);
+      note_colors(*residency, tile, so_far.sample_colors[tile]);
+    };
+  if (CacheAnswer answer = read_cache(path, content, mends ? &losses : nullptr, users);
       answer.fault != CacheFault::none)
     return answer;
   if (of_scene.fault != CacheFault::none) return of_scene;
   Image image = take_image(content);
   if (CacheAnswer answer = trace_again(state->scene(), losses, image); answer.fault != CacheFault::none) return answer;
-  std::string broken = broken_hits(state->scene(), image);
-  if (!broken.empty()) return {CacheFault::damaged, "trees", std::move(broken)};
+  if (!check) {
+    check.emplace(state->scene(), image.paths, image.view.shadow_bits);
+    parallel_for(image.trees.size(), [&](std::size_t tile) {
+      if (!check->is_sound(image.trees[tile])) is_broken = true;
+    });
+  } else {
+    for (const std::size_t tile : losses.tiles) {
+      note_trees(*residency, tile, image.trees[tile]);
+      note_colors(*residency, tile, image.sample_colors[tile]);
+    }
+  }
+  if (is_broken) return {CacheFault::damaged, "trees", "a hit names a triangle that its object does not have"};
   opened = {std::move(state), std::move(image), std::move(content.scene_hash), std::move(losses)};
   return {};
 }

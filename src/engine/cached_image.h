@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cache/cache.h"
+#include "cache/residency.h"
 #include "engine/image.h"
 #include "scene/state.h"
 
@@ -12,9 +13,15 @@ namespace relook {
 /// Moves `image` into a cache's content.
 [[nodiscard]] CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash);
 
-/// The first reason why the image's paths and hits cannot belong to `scene`, "" if there is none: triangles that do not
-/// exist.
-[[nodiscard]] std::string broken_hits(const Scene& scene, const Image& image);
+/// Can hits belong to a scene? They may name triangles that do not exist.
+class HitCheck {
+ public:
+  HitCheck(const Scene& scene, const PathTable& paths, std::uint32_t shadow_bits);
+  [[nodiscard]] bool is_sound(const TileTrees& tile) const;
+
+ private:
+  std::vector<std::vector<std::uint64_t>> most_;  // [path][hit] triangles of the object
+};
 
 /// Traces the tiles of `losses` again, so that `content` is as it was written, byte for byte. Returns what keeps the
 /// scene from being compiled.
@@ -28,7 +35,8 @@ struct OpenedCache {
   CacheLosses losses;  // made good
 };
 /// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults. On a fault
-/// `opened` is untouched.
-[[nodiscard]] CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened);
+/// `opened` is untouched. `residency`: tiles leave memory for it as they are read; null: all are kept.
+[[nodiscard]] CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened,
+                                     Residency* residency = nullptr);
 
 }  // namespace relook

@@ -24,7 +24,8 @@ std::size_t common(const std::vector<std::uint32_t>& a, const std::vector<std::u
 struct Replayer::Impl {
   SceneState state;
   RayScene rays;
-  Residency residency;
+  std::unique_ptr<Residency> owned_residency;
+  Residency& residency{*owned_residency};
   StoredImage stored;
   ObjectLevels objects{rays};
   ProgramTable programs;
@@ -35,10 +36,10 @@ struct Replayer::Impl {
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
   std::vector<ShownSamples> on_top;   // by tile, while objects are lifted: where they are seen
 
-  Impl(SceneState s, Image i, const RegionOptions& options, ResidencyOptions memory)
+  Impl(SceneState s, Image i, const RegionOptions& options, std::unique_ptr<Residency> pieces)
       : state(std::move(s)),
         rays(state.scene()),
-        residency(with_tracking(std::move(memory), options)),
+        owned_residency(with_tracking(std::move(pieces), options)),
         stored(std::move(i), state.scene().light_order, atoms(options.atoms), options, residency),
         compressed(image().trees.size(),
                    static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {
@@ -48,9 +49,10 @@ struct Replayer::Impl {
     stored.forget_hits(options.ray_trees);
   }
 
-  static ResidencyOptions with_tracking(ResidencyOptions memory, const RegionOptions& options) {
-    memory.tracks_pieces = memory.tracks_pieces || options.ray_trees < 1;
-    return memory;
+  static std::unique_ptr<Residency> with_tracking(std::unique_ptr<Residency> pieces, const RegionOptions& options) {
+    if (!pieces) pieces = std::make_unique<Residency>(ResidencyOptions());
+    if (options.ray_trees < 1) pieces->track();
+    return pieces;
   }
 
   [[nodiscard]] const Image& image() const { return stored.image(); }
@@ -367,7 +369,7 @@ struct Replayer::Impl {
   }
 };
 
-Replayer::Replayer(SceneState state, Image image, const RegionOptions& options, ResidencyOptions residency)
+Replayer::Replayer(SceneState state, Image image, const RegionOptions& options, std::unique_ptr<Residency> residency)
     : impl_(std::make_unique<Impl>(std::move(state), std::move(image), options, std::move(residency))) {}
 Replayer::~Replayer() = default;
 Replayer::Replayer(Replayer&&) noexcept = default;

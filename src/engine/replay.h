@@ -18,9 +18,10 @@ struct ParameterSet;
 
 class Replayer {
  public:
-  /// Takes over a state and the image rendered from it (by preprocess() or from a cache).
-  /// Throws IoError when the spill folder cannot be used.
-  Replayer(SceneState state, Image image, const RegionOptions& options = {}, ResidencyOptions residency = {});
+  /// Takes over a state and the image rendered from it (by preprocess() or from a cache). `residency`: with which the
+  /// cache was read, or with no pieces yet; null: no limit.
+  Replayer(SceneState state, Image image, const RegionOptions& options = {},
+           std::unique_ptr<Residency> residency = nullptr);
   ~Replayer();
   Replayer(Replayer&&) noexcept;
 

@@ -4,9 +4,9 @@
 #include <cstring>
 #include <numeric>
 
-#include "base/byte_columns.h"
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "engine/image_pieces.h"
 #include "engine/sampling.h"
 
 namespace relook {
@@ -42,13 +42,6 @@ TileTrees with_hits_of(const TileUpdate& update, TileTrees trees) {
   return next;
 }
 
-std::uint64_t hit_bytes(const TileTrees& trees) {
-  return trees.first_hit.capacity() * sizeof(std::uint32_t) + trees.hits.capacity() * sizeof(Hit);
-}
-
-/// Until it has been measured: about what a ray against one object takes.
-constexpr double kObjectRaySeconds = 5e-7;
-
 }  // namespace
 
 StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms,
@@ -72,45 +65,12 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
 }
 
 void StoredImage::add_pieces() {
-  PieceHandler trees;
-  trees.pack = [this](std::size_t tile) {
-    ByteColumns columns;
-    columns.append(image_.trees[tile].first_hit);
-    columns.append(image_.trees[tile].hits);
-    return columns.take();
-  };
-  trees.unpack = [this](std::size_t tile, BytesView bytes) {
-    ByteColumnsReader columns(bytes);
-    columns.next(image_.trees[tile].first_hit);
-    columns.next(image_.trees[tile].hits);
-  };
-  trees.drop = [this](std::size_t tile) {
-    give_back(image_.trees[tile].first_hit);
-    give_back(image_.trees[tile].hits);
-  };
-  trees.may_be_missing = true;
-  residency_.add_kind(PieceKind::ray_trees, image_.trees.size(), std::move(trees));
-  PieceHandler colors;
-  colors.pack = [this](std::size_t tile) {
-    ByteColumns columns;
-    columns.append(image_.sample_colors[tile]);
-    return columns.take();
-  };
-  colors.unpack = [this](std::size_t tile, BytesView bytes) {
-    ByteColumnsReader(bytes).next(image_.sample_colors[tile]);
-  };
-  colors.drop = [this](std::size_t tile) { give_back(image_.sample_colors[tile]); };
-  residency_.add_kind(PieceKind::sample_colors, image_.trees.size(), std::move(colors));
+  if (residency_.has_kind(PieceKind::ray_trees)) return;  // read under a limit
+  add_image_pieces(residency_, image_.trees, image_.sample_colors);
   for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) {
-    note_hits(tile);
-    residency_.set(PieceKind::sample_colors, tile, image_.sample_colors[tile].size() * sizeof(Rgba), 0);
+    note_trees(residency_, tile, image_.trees[tile]);
+    note_colors(residency_, tile, image_.sample_colors[tile]);
   }
-}
-
-void StoredImage::note_hits(std::size_t tile) {
-  const TileTrees& trees = image_.trees[tile];
-  residency_.set(PieceKind::ray_trees, tile, hit_bytes(trees),
-                 static_cast<double>(trees.hits.size()) * kObjectRaySeconds);
 }
 
 void StoredImage::forget_hits(double share) {
@@ -174,7 +134,7 @@ void StoredImage::keep_hits(TileUpdate& update) {
   if (!update.packed.empty() && has_hits(image_.trees[update.tile])) {
     TileTrees& trees = image_.trees[update.tile];
     trees = with_hits_of(update, std::move(trees));
-    note_hits(update.tile);
+    note_trees(residency_, update.tile, trees);
   }
   give_back(update.hits);
   give_back(update.first_hit);
@@ -242,7 +202,7 @@ void StoredImage::keep_colors(std::size_t tile, std::span<const std::uint32_t> s
   const auto lease = residency_.use(PieceKind::sample_colors, tile);
   std::vector<Rgba>& stored = image_.sample_colors[tile];
   for (std::size_t k = 0; k < samples.size(); ++k) stored[samples[k]] = colors[k];
-  residency_.set(PieceKind::sample_colors, tile, stored.size() * sizeof(Rgba), 0);
+  note_colors(residency_, tile, stored);
 }
 
 void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,

@@ -73,7 +73,6 @@ class StoredImage {
     return [this](PathId path) { return classes_.of(path); };
   }
   void add_pieces();
-  void note_hits(std::size_t tile);
   void index_paths();
   void classify_paths(const GrowScene& scene);
   void count_segments(std::size_t tile);

@@ -19,7 +19,7 @@ constexpr int kRounds = 3;                                          // of the jo
 class Run {
  public:
   Run(const BenchOptions& options, const Image& image, const RegionOptions& regions, ResidencyOptions residency)
-      : replayer_(load_scene(options), image, regions, std::move(residency)) {}
+      : replayer_(load_scene(options), image, regions, std::make_unique<Residency>(std::move(residency))) {}
 
   double step(const JournalStep& step, const Journal& journal) {
     return timed(replayer_, StepKind::step, whole_edit(step), journal).seconds;

@@ -1,0 +1,61 @@
+#include "engine/image_pieces.h"
+
+#include "base/byte_columns.h"
+#include "base/memory.h"
+
+namespace relook {
+namespace {
+
+/// Until it has been measured: about what a ray against one object takes.
+constexpr double kObjectRaySeconds = 5e-7;
+
+}  // namespace
+
+std::uint64_t hit_bytes(const TileTrees& trees) {
+  return trees.first_hit.capacity() * sizeof(std::uint32_t) + trees.hits.capacity() * sizeof(Hit);
+}
+
+void add_image_pieces(Residency& residency, std::vector<TileTrees>& trees, std::vector<std::vector<Rgba>>& colors) {
+  PieceHandler of_trees;
+  of_trees.pack = [tiles = trees.data()](std::size_t tile) {
+    ByteColumns columns;
+    columns.append(tiles[tile].first_hit);
+    columns.append(tiles[tile].hits);
+    return columns.take();
+  };
+  of_trees.unpack = [tiles = trees.data()](std::size_t tile, BytesView bytes) {
+    ByteColumnsReader columns(bytes);
+    columns.next(tiles[tile].first_hit);
+    columns.next(tiles[tile].hits);
+  };
+  of_trees.drop = [tiles = trees.data()](std::size_t tile) {
+    give_back(tiles[tile].first_hit);
+    give_back(tiles[tile].hits);
+  };
+  of_trees.may_be_missing = true;
+  residency.add_kind(PieceKind::ray_trees, trees.size(), std::move(of_trees));
+
+  PieceHandler of_colors;
+  of_colors.pack = [tiles = colors.data()](std::size_t tile) {
+    ByteColumns columns;
+    columns.append(tiles[tile]);
+    return columns.take();
+  };
+  of_colors.unpack = [tiles = colors.data()](std::size_t tile, BytesView bytes) {
+    ByteColumnsReader(bytes).next(tiles[tile]);
+  };
+  of_colors.drop = [tiles = colors.data()](std::size_t tile) { give_back(tiles[tile]); };
+  residency.add_kind(PieceKind::sample_colors, colors.size(), std::move(of_colors));
+}
+
+void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees) {
+  if (has_hits(trees))
+    residency.set(PieceKind::ray_trees, tile, hit_bytes(trees),
+                  static_cast<double>(trees.hits.size()) * kObjectRaySeconds);
+}
+
+void note_colors(Residency& residency, std::size_t tile, const std::vector<Rgba>& colors) {
+  residency.set(PieceKind::sample_colors, tile, colors.size() * sizeof(Rgba), 0);
+}
+
+}  // namespace relook

@@ -1,0 +1,21 @@
+// Ray trees and sample colours as pieces that may leave memory (cache/residency.h), from the moment a cache is read.
+#pragma once
+#include <vector>
+
+#include "cache/residency.h"
+#include "engine/image.h"
+
+namespace relook {
+
+/// Says how they come and go; all are missing until they are noted. The vectors keep their elements where these are:
+/// they may be moved, not resized.
+void add_image_pieces(Residency& residency, std::vector<TileTrees>& trees, std::vector<std::vector<Rgba>>& colors);
+
+/// A tile's trees have changed. Without hits they are missing.
+void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees);
+void note_colors(Residency& residency, std::size_t tile, const std::vector<Rgba>& colors);
+
+/// Of the hits and where they start.
+[[nodiscard]] std::uint64_t hit_bytes(const TileTrees& trees);
+
+}  // namespace relook
