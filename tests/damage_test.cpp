@@ -144,6 +144,34 @@ TEST_F(Damage, missing_groups_of_tiles_are_traced_again_and_no_others) {
   EXPECT_EQ(read_cache(cache_, content).fault, CacheFault::damaged) << "strict";
 }
 
+TEST_F(Damage, tiles_that_leave_memory_as_they_are_read_come_back_the_same) {
+  write(64 * 8, 64 * 5, {4, 3, 0});  // 40 tiles: five groups
+  for (const bool is_damaged : {false, true}) {
+    if (is_damaged) {
+      const std::vector<std::filesystem::path> all = files();
+      std::filesystem::remove(*std::ranges::find_if(
+          all, [](const std::filesystem::path& file) { return file.filename().string().starts_with("00002-"); }));
+    }
+    ResidencyOptions options;
+    options.memory_bytes = 1 << 20;  // a fifth
+    options.process_bytes = [] { return std::uint64_t{0}; };
+    options.spill_folder = testing::TempDir();
+    Residency residency(options);
+    OpenedCache opened;
+    ASSERT_EQ(open_cache(cache_, true, opened, &residency).fault, CacheFault::none);
+    EXPECT_EQ(opened.losses.tiles.size(), is_damaged ? 8U : 0U);
+    const Image& image = opened.image;
+    EXPECT_GT(std::ranges::count_if(image.sample_colors, &std::vector<Rgba>::empty), 20);
+    for (std::size_t tile = 0; tile < image.trees.size(); ++tile) {
+      const auto trees = residency.use(PieceKind::ray_trees, tile);
+      const auto colors = residency.use(PieceKind::sample_colors, tile);
+      EXPECT_EQ(image.trees[tile].hits, written_.trees[tile].hits) << tile;
+      EXPECT_EQ(image.trees[tile].first_hit, written_.trees[tile].first_hit) << tile;
+      EXPECT_TRUE(same_colors(image.sample_colors[tile], written_.sample_colors[tile])) << tile;
+    }
+  }
+}
+
 TEST_F(Damage, a_replay_says_what_it_traced_again_and_strict_refuses) {
   const std::string scene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
   const std::string cache = cache_.string(), journal = (folder_ / "j.json").string();
