@@ -138,7 +138,8 @@ bool Residency::fits(std::uint64_t bytes) const {
 
 std::uint64_t Residency::outside_now() const {
   const std::uint64_t resident = options_.process_bytes(), known = known_bytes();
-  return resident > known ? resident - known : 0;
+  // While a cache is read, what comes next is not there yet.
+  return (resident > known ? resident - known : 0) + (change_ == 0 ? reserve_bytes_ : 0);
 }
 
 void Residency::measure_outside() {
@@ -162,7 +163,8 @@ void Residency::begin_change() {
   if (change_ > 1 && outside_bytes_ > base) reserve_bytes_ = std::max(reserve_bytes_, outside_bytes_ - base);
   outside_bytes_ = base + reserve_bytes_;
   if (make_room_locked(0)) return;
-  if (const std::uint64_t needed = base + known_bytes(); needed > *options_.memory_bytes)
+  const std::uint64_t needed = base + known_bytes() + (change_ == 1 ? options_.working_bytes : 0);
+  if (needed > *options_.memory_bytes)
     throw ResourceError("--memory", "this replay needs at least " + megabytes(needed));
 }
 

@@ -23,6 +23,7 @@ inline constexpr std::size_t kPieceKinds = 3;
 
 struct ResidencyOptions {
   std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
+  std::uint64_t working_bytes = 0;            // that any change needs beside pieces
   std::uint64_t reserve_bytes = 0;            // left to a change beside pieces until one has been measured
   EvictionPolicy policy = EvictionPolicy::weight;
   std::filesystem::path spill_folder;  // "": nothing is spilled
