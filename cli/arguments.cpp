@@ -161,6 +161,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_view(preprocess, arguments, raw);
   add_look_patch(preprocess, arguments);
   add_structures(preprocess, arguments, raw);
+  preprocess.add_option("--disk", raw.disk,
+                        "Most disk for the cache, like 20G: ray trees are left out where they are worth the least");
 
   CLI::App& replay = *app.add_subcommand("replay", "Replay journals against a cache: a frame per step and a report");
   add_inputs(replay, arguments, "CACHE JOURNAL", "Cache folder, then journals", 2, kMostJournals);

@@ -1,13 +1,29 @@
 #include <optional>
 
+#include "base/memory.h"
 #include "cache/cache.h"
 #include "engine/cached_image.h"
+#include "engine/image_pieces.h"
 #include "engine/render.h"
 #include "load_cache.h"
 #include "load_scene.h"
 #include "verbs.h"
 
 namespace relook {
+
+namespace {
+
+/// Keeps the ray trees of a share of the samples.
+void forget_trees(Image& image, double share) {
+  std::vector<std::uint64_t> hits;
+  for (const TileTrees& trees : image.trees) hits.push_back(trees.hits.size());
+  for (const std::size_t tile : tiles_beyond(share, image.trees, hits)) {
+    give_back(image.trees[tile].first_hit);
+    give_back(image.trees[tile].hits);
+  }
+}
+
+}  // namespace
 
 ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   refuse_foreign_folder(arguments.output);
@@ -21,8 +37,10 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   console.end_stage();
   span.emplace(console.trace(), "write cache");
   const std::size_t paths = image.paths.size();
-  const CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash);
+  forget_trees(image, arguments.structures.ray_trees_percent / 100);
+  CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash);
   console.check_interrupt();
+  if (arguments.structures.disk_bytes) fit_to_disk(content, *arguments.structures.disk_bytes);
   write_cache(arguments.output, content);
   span.reset();
   console.part_done();

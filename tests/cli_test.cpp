@@ -52,6 +52,43 @@ class Cli : public testing::Test {
   ScratchFolder folder_{"cli"};
 };
 
+std::uint64_t folder_bytes(const std::filesystem::path& folder) {
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) bytes += entry.file_size();
+  return bytes;
+}
+
+TEST_F(Cli, a_cache_with_fewer_ray_trees_gives_the_same_frames) {
+  write_text(at("j.json"), kJournal);
+  // Several groups of tiles: 131,072 samples each.
+  const auto replayed = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all{"preprocess", kScene,      "-o", at("c"),  "--resolution",
+                                 "200x120",    "--samples", "16", "--quiet"};
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_EQ(relook(all).exit_code, 0);
+    EXPECT_EQ(relook({"check", at("c"), "--quiet"}).exit_code, 0);
+    EXPECT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet", "--fresh"}).exit_code, 0);
+    return read_json(at("run") + "/report.json");
+  };
+  const Json whole = replayed({});
+  const std::uint64_t most = folder_bytes(at("c"));
+  EXPECT_EQ(whole["steps"][2]["rebuilt"]["ray_trees"], 0);
+  const Json none = replayed({"--ray-trees", "0"});
+  const std::uint64_t least = folder_bytes(at("c"));
+  EXPECT_LT(least, most);
+  EXPECT_EQ(none["frames"], whole["frames"]);
+  EXPECT_GT(none["steps"][1]["rebuilt"]["ray_trees"], 0);
+  const std::uint64_t half = (least + most) / 2;
+  const Json some = replayed({"--disk", std::to_string((half >> 10) + 8) + "K"});
+  EXPECT_LE(folder_bytes(at("c")), half + (8 << 10));
+  EXPECT_GT(folder_bytes(at("c")), least);
+  EXPECT_EQ(some["frames"], whole["frames"]);
+  expect_error(relook({"preprocess", kScene, "-o", at("d"), "--resolution", "200x120", "--disk", "9K", "--quiet"}), 4,
+               "--disk: this cache needs at least");
+  EXPECT_FALSE(std::filesystem::exists(at("d")));
+}
+
 TEST_F(Cli, usage_errors_are_one_line_and_exit_1) {
   expect_error(relook({}), 1, "a verb is required");
   expect_error(relook({"pln"}), 1, "no verb \"pln\"");

@@ -47,6 +47,10 @@ void refuse_foreign_folder(const std::filesystem::path& path);
 /// work. Throws IoError, ResourceError.
 void require_writable(const std::filesystem::path& path);
 
+/// Takes hits out of `content`, of the tile groups that are worth the least (paper 4.3: time to rebuild over bytes on
+/// disk), until its cache is no larger than `bytes`. Throws ResourceError that names the least it takes.
+void fit_to_disk(CacheContent& content, std::uint64_t bytes);
+
 /// Writes to a temporary folder beside `path` and publishes by rename; an existing cache at `path` is replaced whole,
 /// an existing folder that is not a cache is refused (InputError). Bytes do not depend on the thread count. Throws
 /// IoError, ResourceError; on failure nothing remains.

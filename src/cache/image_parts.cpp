@@ -5,6 +5,7 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base/error.h"
@@ -94,11 +95,13 @@ Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheId
   std::vector<std::uint32_t> paths, primitives;
   std::vector<float> u, v;
   std::vector<Rgba> colors;
+  std::vector<std::uint8_t> kept;
   const auto [first, last] = cache_group(content.camera, content.samples, group);
   for (std::size_t tile = first; tile < last; ++tile) {
     const TileTrees& trees = content.trees[tile];
     require(trees.paths.size() == cache_tile_samples(content.camera, content.samples, tile), "a tile has all samples");
     for (const PathId path : trees.paths) paths.push_back(path.index());
+    kept.push_back(trees.first_hit.empty() ? 0 : 1);
     for (const Hit& hit : trees.hits) {
       primitives.push_back(hit.primitive);
       u.push_back(hit.u);
@@ -110,6 +113,7 @@ Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheId
   }
   ContainerWriter writer;
   writer.add_column("paths", paths, sizeof(std::uint32_t));
+  if (std::ranges::find(kept, 0) != kept.end()) writer.add_column("kept", kept, sizeof(std::uint8_t));
   writer.add_column("primitives", primitives, sizeof(std::uint32_t));
   writer.add_column("u", u, sizeof(float));
   writer.add_column("v", v, sizeof(float));
@@ -146,11 +150,16 @@ struct GroupColumns {
   std::vector<std::uint32_t> paths, primitives;
   std::vector<float> u, v;
   std::vector<Rgba> colors;
+  std::vector<std::uint8_t> kept;  // by tile: are there hits?
   std::size_t next_sample = 0, next_hit = 0;
 
-  TileTrees take_tile(std::size_t samples, std::span<const std::size_t> hits_of_path) {
+  TileTrees take_tile(std::size_t samples, bool has_hits, std::span<const std::size_t> hits_of_path) {
     TileTrees trees;
     trees.paths.reserve(samples);
+    if (!has_hits) {
+      for (std::size_t i = 0; i < samples; ++i) trees.paths.emplace_back(paths[next_sample++]);
+      return trees;
+    }
     trees.first_hit.reserve(samples + 1);
     trees.first_hit.push_back(0);
     std::size_t hits = 0;
@@ -173,14 +182,22 @@ void check_weights(const std::vector<float>& weights, const char* section) {
     check_sound(std::abs(weight) <= kLargestWeight, "a weight beyond a triangle in section ", section);
 }
 
-GroupColumns read_columns(const ContainerReader& reader, std::uint64_t samples, bool has_colors,
+/// `tile_samples`: of each tile of the group.
+GroupColumns read_columns(const ContainerReader& reader, std::span<const std::size_t> tile_samples, bool has_colors,
                           std::span<const std::size_t> hits_of_path) {
   GroupColumns columns;
+  const std::uint64_t samples = std::accumulate(tile_samples.begin(), tile_samples.end(), std::uint64_t{0});
   columns.paths = reader.column<std::uint32_t>("paths", samples);
+  columns.kept.assign(tile_samples.size(), 1);
+  if (reader.has("kept")) columns.kept = reader.column<std::uint8_t>("kept", tile_samples.size());
   std::uint64_t hits = 0;
-  for (const std::uint32_t path : columns.paths) {
-    check_sound(path < hits_of_path.size(), "a path that does not exist in section paths");
-    hits += hits_of_path[path];
+  const std::uint32_t* path = columns.paths.data();
+  for (std::size_t tile = 0; tile < tile_samples.size(); ++tile) {
+    check_sound(columns.kept[tile] <= 1, "neither yes nor no in section kept");
+    for (std::size_t i = 0; i < tile_samples[tile]; ++i, ++path) {
+      check_sound(*path < hits_of_path.size(), "a path that does not exist in section paths");
+      if (columns.kept[tile] == 1) hits += hits_of_path[*path];
+    }
   }
   check_sound(hits <= std::numeric_limits<std::uint32_t>::max(), "more hits than a tile group can have");
   columns.primitives = reader.column<std::uint32_t>("primitives", hits);
@@ -201,16 +218,15 @@ void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t gro
                   std::span<const std::size_t> hits_of_path, CacheContent& content) {
   const ContainerReader reader(file, identity);
   const auto [first, last] = cache_group(content.camera, content.samples, group);
-  std::uint64_t samples = 0;
+  std::vector<std::size_t> samples;
   for (std::size_t tile = first; tile < last; ++tile)
-    samples += cache_tile_samples(content.camera, content.samples, tile);
+    samples.push_back(cache_tile_samples(content.camera, content.samples, tile));
   const bool has_colors = reader.has("colors");
   check_sound(has_colors || content.samples == 1, "no section colors");
   GroupColumns columns = read_columns(reader, samples, has_colors, hits_of_path);
   for (std::size_t tile = first; tile < last; ++tile) {
-    const std::size_t tile_samples = cache_tile_samples(content.camera, content.samples, tile);
     const auto first_color = static_cast<std::ptrdiff_t>(columns.next_sample);
-    content.trees[tile] = columns.take_tile(tile_samples, hits_of_path);
+    content.trees[tile] = columns.take_tile(samples[tile - first], columns.kept[tile - first] == 1, hits_of_path);
     if (!has_colors)
       content.sample_colors[tile] = pixels_of_tile(content, tile);
     else

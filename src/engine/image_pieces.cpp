@@ -1,5 +1,9 @@
 #include "engine/image_pieces.h"
 
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
 #include "base/byte_columns.h"
 #include "base/memory.h"
 
@@ -46,6 +50,25 @@ void add_image_pieces(Residency& residency, std::vector<TileTrees>& trees, std::
   };
   of_colors.drop = [tiles = colors.data()](std::size_t tile) { give_back(tiles[tile]); };
   residency.add_kind(PieceKind::sample_colors, colors.size(), std::move(of_colors));
+}
+
+std::vector<std::size_t> tiles_beyond(double share, const std::vector<TileTrees>& trees,
+                                      std::span<const std::uint64_t> nodes) {
+  std::vector<std::size_t> tiles(share < 1 ? trees.size() : 0);
+  std::iota(tiles.begin(), tiles.end(), std::size_t{0});
+  const auto depth = [&](std::size_t tile) {
+    return static_cast<double>(nodes[tile]) / static_cast<double>(trees[tile].paths.size());
+  };
+  std::ranges::stable_sort(tiles, std::greater(), depth);
+  double left = 0;
+  for (const std::size_t tile : tiles) left += share * static_cast<double>(trees[tile].paths.size());
+  std::erase_if(tiles, [&](std::size_t tile) {
+    const auto samples = static_cast<double>(trees[tile].paths.size());
+    if (samples > left) return false;
+    left -= samples;
+    return true;
+  });
+  return tiles;
 }
 
 void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees) {

@@ -1,5 +1,6 @@
 // Ray trees and sample colours as pieces that may leave memory (cache/residency.h), from the moment a cache is read.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "cache/residency.h"
@@ -14,6 +15,11 @@ void add_image_pieces(Residency& residency, std::vector<TileTrees>& trees, std::
 /// A tile's trees have changed. Without hits they are missing.
 void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees);
 void note_colors(Residency& residency, std::size_t tile, const std::vector<Rgba>& colors);
+
+/// The tiles whose ray trees are not among a share of the samples (m_r of the paper's 4.1), where those with the most
+/// `nodes` a sample are kept.
+[[nodiscard]] std::vector<std::size_t> tiles_beyond(double share, const std::vector<TileTrees>& trees,
+                                                    std::span<const std::uint64_t> nodes);
 
 /// Of the hits and where they start.
 [[nodiscard]] std::uint64_t hit_bytes(const TileTrees& trees);

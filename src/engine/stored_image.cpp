@@ -74,22 +74,8 @@ void StoredImage::add_pieces() {
 }
 
 void StoredImage::forget_hits(double share) {
-  if (share >= 1) return;
-  std::vector<std::size_t> tiles(image_.trees.size());
-  std::iota(tiles.begin(), tiles.end(), std::size_t{0});
-  const auto hits_per_sample = [&](std::size_t tile) {
-    const TileTrees& trees = image_.trees[tile];
-    return static_cast<double>(trees.hits.size()) / static_cast<double>(trees.paths.size());
-  };
-  std::ranges::stable_sort(tiles, std::greater(), hits_per_sample);
-  double left = static_cast<double>(samples_) * share;
-  for (const std::size_t tile : tiles) {
-    const auto samples = static_cast<double>(image_.trees[tile].paths.size());
-    if (samples <= left)
-      left -= samples;
-    else
-      residency_.forget(PieceKind::ray_trees, tile);
-  }
+  for (const std::size_t tile : tiles_beyond(share, image_.trees, tile_segments_))
+    residency_.forget(PieceKind::ray_trees, tile);
 }
 
 Resident StoredImage::resident() const {
