@@ -155,7 +155,6 @@ void write_json(const Arguments& arguments, const Json& result, Console& console
   console.json(result);
   if (!arguments.json_file.empty()) write_file(arguments.json_file, text);
   if (arguments.output.empty()) return;
-  make_folders(arguments.output);
   write_file(std::filesystem::path(arguments.output) / "compare.json", text);
 }
 
@@ -164,6 +163,7 @@ void write_json(const Arguments& arguments, const Json& result, Console& console
 ExitCode run_compare(const Arguments& arguments, Console& console) {
   const std::vector<std::string>& inputs = arguments.inputs;
   const bool are_folders = check_kinds(inputs);
+  if (!arguments.output.empty()) make_folders(arguments.output);  // found out before the work
   Json pairs = Json::array();
   Verdict verdict = Verdict::equal;
   ComparePage page(inputs[0]);

@@ -69,13 +69,18 @@ void Console::show(const std::string& stage, double done) {
     bar_is_open_ = true;
     print(stderr, std::string("\r").append(bar(percent)).append(" " + share + " % " + stage + "\x1b[K"));
   } else if (style_ == ProgressStyle::json) {
-    if (logs_json_)
-      log("info", {{"stage", stage}, {"percent", percent}});
-    else
-      print(stderr, Json{{"stage", stage}, {"percent", percent}}.dump() + "\n");
+    show_json("stage", stage, percent);
   } else {
     print(stderr, stage + ": " + share + " %\n");
   }
+}
+
+void Console::show_json(const char* key, std::string_view what, int percent) const {
+  Json progress{{key, printable(what)}, {"percent", percent}};
+  if (logs_json_)
+    log("info", std::move(progress));
+  else
+    print(stderr, progress.dump() + "\n");
 }
 
 void Console::line(std::string_view text) const {
@@ -107,8 +112,9 @@ void Console::error(ExitCode code, std::string_view what) {
 }
 
 void Console::part(double begin, double end, std::string_view what) {
-  if (style_ != ProgressStyle::openjd) return;
   const std::lock_guard lock(mutex_);
+  if (style_ == ProgressStyle::json) show_json("part", what, static_cast<int>(begin * 100));
+  if (style_ != ProgressStyle::openjd) return;
   part_begin_ = begin;
   part_end_ = end;
   say("openjd_status", what);

@@ -40,7 +40,7 @@ class Console {
   void error(ExitCode code, std::string_view what);
 
   /// The part of the whole work that stages and part_done() are shares of from here on, 0..1, and what it is: for
-  /// --progress openjd, which shows one percentage for the whole.
+  /// --progress openjd, which shows one percentage for the whole, and json.
   void part(double begin, double end, std::string_view what);
   void part_done();
 
@@ -51,6 +51,7 @@ class Console {
  private:
   void show(const std::string& stage, double done);
   void show_whole(double done);
+  void show_json(const char* key, std::string_view what, int percent) const;
   void say(std::string_view key, std::string_view value);
   void log(std::string_view level, Json members) const;
 

@@ -89,6 +89,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   }
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);
+  if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
   std::optional<TraceScope> reading(std::in_place, console.trace(), "read cache");
   std::unique_ptr<Residency> residency = residency_of(arguments, folders.front());
   OpenedCache opened = open_cache(cache, !arguments.strict, residency.get());

@@ -102,6 +102,26 @@ TEST_F(Pipeline, openjd_progress_rises_from_0_to_100_over_the_whole_run) {
   EXPECT_NE(failed.output.find("openjd_fail: " + at("none")), std::string::npos) << failed.output;
 }
 
+TEST_F(Pipeline, json_progress_names_every_part_and_its_share_of_the_whole) {
+  const ProgramResult result = replay("json", {"--progress", "json"});
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  std::vector<int> percents;
+  for (const std::string& line : lines_of(result.output)) {
+    if (!line.starts_with("{")) continue;
+    const Json entry = parse_json(line, "stderr");
+    if (entry.contains("part")) percents.push_back(entry["percent"].get<int>());
+  }
+  EXPECT_EQ(percents.size(), 10U) << "one a frame\n" << result.output;
+  EXPECT_TRUE(std::ranges::is_sorted(percents));
+  EXPECT_EQ(percents.front(), 0);
+}
+
+TEST_F(Pipeline, files_that_cannot_be_written_are_found_out_before_the_work) {
+  const ProgramResult logged = replay("unlogged", {"--access-log", at("none/log")});
+  EXPECT_EQ(logged.exit_code, 6) << logged.output;
+  EXPECT_FALSE(std::filesystem::exists(at("unlogged")));
+}
+
 TEST_F(Pipeline, logs_are_one_json_object_a_line) {
   const ProgramResult rendered = relook({"render", kScene, "-o", at("x.exr"), "--resolution", "72x40", "--log-json"});
   ASSERT_EQ(rendered.exit_code, 0);
