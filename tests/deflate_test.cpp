@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <random>
 
 namespace relook {
 namespace {
@@ -31,6 +32,37 @@ TEST(Deflate, bytes_do_not_depend_on_what_was_in_memory) {
     EXPECT_EQ(deflater.zlib(data), zlib) << value;
     dirty_stack(value);
     EXPECT_EQ(deflater.blocks(data), blocks) << value;
+  }
+}
+
+/// What `deflater` makes of the data with 64 KiB of stack for each unit of `depth` in between.
+[[gnu::noinline]] Bytes zlib_below(Deflater& deflater, const std::vector<unsigned char>& data, int depth) {
+  std::array<volatile unsigned char, 64 << 10> frame;
+  frame[0] = static_cast<unsigned char>(depth);
+  Bytes bytes = depth == 0 ? deflater.zlib(data) : zlib_below(deflater, data, depth - 1);
+  frame[1] = frame[0];
+  return bytes;
+}
+
+TEST(Deflate, bytes_do_not_depend_on_where_the_stack_lies) {
+  std::mt19937 random(1);
+  Deflater deflater;
+  for (int i = 0; i < 500; ++i) {
+    std::vector<unsigned char> data(100);
+    for (std::size_t k = 0; k < data.size(); ++k)
+      data[k] = k < 40 ? static_cast<unsigned char>(random()) : data[k - 40];
+    const Bytes zlib = zlib_below(deflater, data, 0);
+    for (int depth = 1; depth < 100; ++depth) ASSERT_EQ(zlib_below(deflater, data, depth), zlib) << i << ", " << depth;
+  }
+}
+
+TEST(Deflate, every_size_comes_back) {
+  Deflater deflater;
+  for (std::size_t size = 0; size < 700; ++size) {
+    const std::vector<unsigned char> data = repeating(size);
+    std::vector<unsigned char> back(size);
+    ASSERT_TRUE(inflate_zlib(deflater.zlib(data), back)) << size;
+    ASSERT_EQ(back, data) << size;
   }
 }
 
