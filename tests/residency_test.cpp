@@ -65,6 +65,21 @@ TEST_F(Residence, keeps_within_the_limit_and_gives_back_what_was_spilled) {
   EXPECT_EQ(residency.take_counts().evicted[0], 0U);
 }
 
+TEST_F(Residence, expecting_pieces_moves_and_counts_nothing) {
+  Residency& residency = start(3 * kPieceBytes, true);
+  for (std::size_t tile = 0; tile + 1 < kTiles; ++tile) set(tile);
+  const Tiles before = residents();
+  static_cast<void>(residency.take_counts());
+  for (std::size_t tile = 0; tile < kTiles; ++tile) residency.expect(PieceKind::ray_trees, tile);  // the last is missing
+  EXPECT_EQ(residents(), before);
+  EXPECT_EQ(residency.take_counts().reloaded[0], 0U);
+  for (std::size_t tile = 0; tile + 1 < kTiles; ++tile) {
+    const auto lease = residency.use(PieceKind::ray_trees, tile);
+    EXPECT_EQ(pieces_[tile], Bytes(kPieceBytes, static_cast<std::byte>(tile + 1)));
+  }
+  EXPECT_GE(residency.take_counts().reloaded[0], kTiles - 1 - 3);
+}
+
 TEST_F(Residence, without_a_disk_pieces_go_missing_until_they_are_set_again) {
   Residency& residency = start(2 * kPieceBytes, false);
   set(0, 1);

@@ -94,6 +94,17 @@ Residency::Lease Residency::use(PieceKind kind, std::size_t tile) {
   return {this, kind, tile};
 }
 
+void Residency::expect(PieceKind kind, std::size_t tile) {
+  if (!spill_) return;
+  std::optional<SpillFile::Extent> extent;
+  {
+    const std::lock_guard lock(mutex_);
+    const Piece& p = piece(kind, tile);
+    if (p.state == State::spilled) extent = p.copy;
+  }
+  if (extent) spill_->expect(*extent);
+}
+
 void Residency::release(PieceKind kind, std::size_t tile) {
   const std::lock_guard lock(mutex_);
   --piece(kind, tile).pins;

@@ -93,6 +93,8 @@ class Residency {
   void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds, double surface_area = 1);
   /// Makes the piece resident unless it is missing, and keeps it so.
   [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
+  /// The piece will be used soon: if it is on disk, the system begins to fetch it. Nothing else changes.
+  void expect(PieceKind kind, std::size_t tile);
   /// Drops a piece that may be missing, with its copy.
   void forget(PieceKind kind, std::size_t tile);
 

@@ -70,6 +70,11 @@ Bytes SpillFile::read(const Extent& extent) const {
   return bytes;
 }
 
+void SpillFile::expect(const Extent& extent) const {
+  ::posix_fadvise(descriptor_, static_cast<off_t>(extent.offset), static_cast<off_t>(extent.bytes),
+                  POSIX_FADV_WILLNEED);
+}
+
 void SpillFile::free(const Extent& extent) {
   free_.emplace(extent.room, extent.offset);
   used_ -= extent.room;

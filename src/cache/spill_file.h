@@ -26,6 +26,8 @@ class SpillFile {
   [[nodiscard]] std::optional<Extent> write(BytesView bytes);
   /// Reads a copy back. Throws IoError. May be called from several threads, also while another one writes.
   [[nodiscard]] Bytes read(const Extent& extent) const;
+  /// It will be read soon: the system may fetch it meanwhile. From any thread.
+  void expect(const Extent& extent) const;
   void free(const Extent& extent);
   [[nodiscard]] std::uint64_t bytes() const { return used_; }
 

@@ -12,6 +12,10 @@ namespace relook {
 /// they may be moved, not resized.
 void add_image_pieces(Residency& residency, std::vector<TileTrees>& trees, std::vector<std::vector<Rgba>>& colors);
 
+/// What works on tiles in order expects the pieces of the tile that many places ahead. On a disk of 5 ms and 150 MB/s
+/// 4, 8 and 16 took the same time, 1 and 64 longer.
+inline constexpr std::size_t kTilesAhead = 8;
+
 /// A tile's trees have changed. Without hits they are missing.
 void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees);
 void note_colors(Residency& residency, std::size_t tile, const std::vector<Rgba>& colors);

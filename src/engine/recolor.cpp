@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "base/parallel.h"
+#include "engine/image_pieces.h"
 #include "engine/sampling.h"
 
 namespace relook {
@@ -114,6 +115,11 @@ Recolorer::Search Recolorer::search(const StepChange& change, const CompressedIm
   return search;
 }
 
+void Recolorer::expect(const CompressedImage& kept, std::size_t tile) const {
+  if (!kept.tiles[tile].is_valid) stored_.residency().expect(PieceKind::ray_trees, tile);
+  stored_.residency().expect(PieceKind::sample_colors, tile);
+}
+
 void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch) {
   CompressedImage& kept = compressed_.of(change.colors.parameters);
   const std::vector<Leaves>* known_leaves = selection_.leaves(change);
@@ -146,6 +152,7 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   Room room(compressed_.most_samples());
   Pool<Shader> shaders;
   parallel_for(tiles.size(), [&](std::size_t i) {
+    if (i + kTilesAhead < tiles.size()) expect(kept, tiles[i + kTilesAhead]);
     CompressedTile& tile = kept.tiles[tiles[i]];
     if (!tile.is_valid) {
       const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays_, programs_); });

@@ -36,6 +36,8 @@ class Recolorer {
   struct Search;
   [[nodiscard]] Search search(const StepChange& change, const CompressedImage& kept, StepResult& result,
                               StopWatch& watch);
+  /// The tile's turn comes soon.
+  void expect(const CompressedImage& kept, std::size_t tile) const;
   void run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch);
 
   StoredImage& stored_;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "engine/image_pieces.h"
 #include "engine/kept_selection.h"
 #include "engine/recolor.h"
 #include "engine/scene_level.h"
@@ -121,6 +122,7 @@ struct Replayer::Impl {
     std::vector<TileUpdate> updates = updates_to_do(works);
     const std::vector<std::size_t> order = by_work(updates, works);
     parallel_for(order.size(), [&](std::size_t i) {
+      if (i + kTilesAhead < order.size()) expect(updates[order[i + kTilesAhead]].tile);
       TileUpdate& update = updates[order[i]];
       update = update_tile(pass, update.tile, works[update.tile], shaders);
       if (keeps_trees) stored.keep_hits(update);
@@ -131,6 +133,11 @@ struct Replayer::Impl {
     for (const TileWork& work : works) leaves.push_back(work.by_path);
     selection.keep(change, std::move(tasks), std::move(leaves));
     return updates;
+  }
+
+  void expect(std::size_t tile) {
+    residency.expect(PieceKind::ray_trees, tile);
+    residency.expect(PieceKind::sample_colors, tile);
   }
 
   /// `works`: by tile.
