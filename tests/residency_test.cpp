@@ -70,7 +70,8 @@ TEST_F(Residence, expecting_pieces_moves_and_counts_nothing) {
   for (std::size_t tile = 0; tile + 1 < kTiles; ++tile) set(tile);
   const Tiles before = residents();
   static_cast<void>(residency.take_counts());
-  for (std::size_t tile = 0; tile < kTiles; ++tile) residency.expect(PieceKind::ray_trees, tile);  // the last is missing
+  for (std::size_t tile = 0; tile < kTiles; ++tile)
+    residency.expect(PieceKind::ray_trees, tile);  // the last is missing
   EXPECT_EQ(residents(), before);
   EXPECT_EQ(residency.take_counts().reloaded[0], 0U);
   for (std::size_t tile = 0; tile + 1 < kTiles; ++tile) {
