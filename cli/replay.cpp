@@ -50,7 +50,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
   options.memory_bytes = structures.memory_bytes;
   const std::uint64_t tile_bytes = thread_count() * (std::uint64_t{20} << 20);  // about what works on tiles
   options.reserve_bytes = options.memory_bytes.value_or(0) / 16 + tile_bytes;
-  options.working_bytes = tile_bytes + tile_bytes / 2;  // and what later steps need to trace rays
+  options.working_bytes = tile_bytes / 2;
   for (const EvictionPolicy policy : kEvictionPolicies)
     if (policy_name(policy) == structures.policy) options.policy = policy;
   options.spill_folder = arguments.spill.empty() ? folder : std::filesystem::path(arguments.spill);

@@ -34,7 +34,7 @@ class Budget : public testing::TestWithParam<BudgetCase> {};
 /// A limit on pieces alone: what else this process holds does not count.
 ResidencyOptions limited(const BudgetCase& c, EvictionPolicy policy, std::uint64_t all_bytes) {
   ResidencyOptions options;
-  options.process_bytes = [] { return std::uint64_t{0}; };
+  options.process_bytes = nullptr;
   options.policy = policy;
   if (c.memory < 1) options.memory_bytes = static_cast<std::uint64_t>(c.memory * static_cast<double>(all_bytes));
   if (c.has_disk) options.spill_folder = testing::TempDir();
@@ -103,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Eviction, gives_memory_back) {
   ResidencyOptions options;
-  options.process_bytes = [] { return std::uint64_t{0}; };
+  options.process_bytes = nullptr;
   options.memory_bytes = 0;
   options.spill_folder = testing::TempDir();
   Replayer replayer = replayer_of(TestScene::spheres, {4, 5, 0}, {}, options);

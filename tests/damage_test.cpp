@@ -154,7 +154,7 @@ TEST_F(Damage, tiles_that_leave_memory_as_they_are_read_come_back_the_same) {
     }
     ResidencyOptions options;
     options.memory_bytes = 1 << 20;  // a fifth
-    options.process_bytes = [] { return std::uint64_t{0}; };
+    options.process_bytes = nullptr;
     options.spill_folder = testing::TempDir();
     Residency residency(options);
     OpenedCache opened;

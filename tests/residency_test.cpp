@@ -158,6 +158,37 @@ TEST_F(Residence, a_budget_below_the_floor_is_refused_with_the_floor) {
   }
 }
 
+TEST_F(Residence, claims_make_room_before_they_show) {
+  Residency& residency = start(6 * kPieceBytes, true);
+  for (std::size_t tile = 0; tile < 6; ++tile) set(tile);
+  residency.begin_change();
+  residency.claim(2 * kPieceBytes);
+  EXPECT_EQ(residents().size(), 4U);
+  residency.claim(-static_cast<std::int64_t>(kPieceBytes));
+  residency.claim(kPieceBytes);
+  EXPECT_EQ(residents().size(), 4U) << "what was given back is taken again";
+  residency.claim(2 * kPieceBytes);
+  EXPECT_EQ(residents().size(), 2U);
+  residency.require_floor();
+  outside_bytes_ = 4 * kPieceBytes + residents().size() * kPieceBytes;  // the claims are there now
+  residency.begin_change();
+  EXPECT_EQ(residents().size(), 2U) << "and count once";
+}
+
+TEST_F(Residence, claims_beyond_the_limit_are_refused_with_the_floor) {
+  Residency& residency = start(std::uint64_t{200} << 20, true);
+  set(0);
+  residency.begin_change();
+  residency.claim(std::int64_t{250} << 20);
+  EXPECT_FALSE(is_resident(0));
+  try {
+    residency.require_floor();
+    FAIL();
+  } catch (const ResourceError& error) {
+    EXPECT_NE(std::string(error.what()).find("250M"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(Residence, others_leave_when_they_weigh_least) {
   Residency& residency = start(3 * kPieceBytes, false);
   std::uint64_t others = kPieceBytes;

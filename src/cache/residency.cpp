@@ -148,7 +148,7 @@ bool Residency::fits(std::uint64_t bytes) const {
 }
 
 std::uint64_t Residency::outside_now() const {
-  const std::uint64_t resident = options_.process_bytes(), known = known_bytes();
+  const std::uint64_t resident = options_.process_bytes ? options_.process_bytes() : 0, known = known_bytes();
   // While a cache is read, what comes next is not there yet.
   return (resident > known ? resident - known : 0) + (change_ == 0 ? reserve_bytes_ : 0);
 }
@@ -170,11 +170,33 @@ void Residency::begin_change() {
   trims_left_ = kMostTrims;
   if (!is_limited()) return;
   trim_allocator();
-  const std::uint64_t base = outside_now();
-  if (change_ > 1 && outside_bytes_ > base) reserve_bytes_ = std::max(reserve_bytes_, outside_bytes_ - base);
-  outside_bytes_ = base + reserve_bytes_;
-  if (make_room_locked(0)) return;
-  const std::uint64_t needed = base + known_bytes() + (change_ == 1 ? options_.working_bytes : 0);
+  base_bytes_ = outside_now();
+  claimed_bytes_ = 0;
+  if (change_ > 1 && outside_bytes_ > base_bytes_)
+    reserve_bytes_ = std::max(reserve_bytes_, outside_bytes_ - base_bytes_);
+  outside_bytes_ = base_bytes_ + reserve_bytes_;
+  if (!make_room_locked(0)) require_floor_locked();
+}
+
+void Residency::claim(std::int64_t bytes) {
+  if (!options_.process_bytes) return;
+  const std::lock_guard lock(mutex_);
+  claimed_bytes_ += bytes;
+  if (claimed_bytes_ <= 0) return;
+  outside_bytes_ = std::max(outside_bytes_, base_bytes_ + static_cast<std::uint64_t>(claimed_bytes_) + reserve_bytes_);
+  make_room_locked(0);
+}
+
+void Residency::require_floor() {
+  if (!is_limited()) return;
+  const std::lock_guard lock(mutex_);
+  if (!make_room_locked(0)) require_floor_locked();
+}
+
+void Residency::require_floor_locked() const {
+  const std::uint64_t claimed = claimed_bytes_ > 0 ? static_cast<std::uint64_t>(claimed_bytes_) : 0;
+  const std::uint64_t working = options_.working_bytes * (change_ == 1 ? 3 : 1);
+  const std::uint64_t needed = base_bytes_ + claimed + known_bytes() + working;
   if (needed > *options_.memory_bytes)
     throw ResourceError("--memory", "this replay needs at least " + megabytes(needed));
 }

@@ -23,13 +23,13 @@ inline constexpr std::size_t kPieceKinds = 3;
 
 struct ResidencyOptions {
   std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
-  std::uint64_t working_bytes = 0;            // that any change needs beside pieces
+  std::uint64_t working_bytes = 0;            // that a change needs beside pieces, the first one three times as much
   std::uint64_t reserve_bytes = 0;            // left to a change beside pieces until one has been measured
   EvictionPolicy policy = EvictionPolicy::weight;
   std::filesystem::path spill_folder;  // "": nothing is spilled
   std::uint64_t disk_bytes = ~std::uint64_t{0};
   bool logs_accesses = false;
-  std::function<std::uint64_t()> process_bytes = resident_set_bytes;
+  std::function<std::uint64_t()> process_bytes = resident_set_bytes;  // empty: only pieces count
 };
 
 /// How the owner's data of one kind come and go. The functions are called for one tile at a time, those for different
@@ -101,6 +101,10 @@ class Residency {
   /// A new change begins: ages advance, memory outside of pieces is measured, what is over the budget leaves. Throws
   /// ResourceError that names the floor if the budget cannot be kept.
   void begin_change();
+  /// `bytes` more are about to be taken beside pieces, before they show in the process; negative: were given back.
+  void claim(std::int64_t bytes);
+  /// Throws ResourceError that names the floor if what stays is more than the budget.
+  void require_floor();
   /// Evicts until `bytes` more fit, as far as possible; do they?
   bool make_room(std::uint64_t bytes);
 
@@ -140,6 +144,7 @@ class Residency {
   [[nodiscard]] std::uint64_t outside_now() const;
   void measure_outside();
   bool make_room_locked(std::uint64_t bytes);
+  void require_floor_locked() const;
   void list_candidates();
   bool evict(PieceKind kind, std::size_t tile);
   [[nodiscard]] double return_seconds(const Piece& piece) const;
@@ -153,7 +158,9 @@ class Residency {
   mutable std::mutex mutex_;
   std::uint64_t change_ = 0, resident_bytes_ = 0;
   std::uint64_t reserve_bytes_ = 0;  // the most that a change has held beside pieces and gave back
-  std::uint64_t outside_bytes_ = 0;  // beside pieces: as this change began with the reserve, or as measured if more
+  std::uint64_t base_bytes_ = 0;     // beside pieces, as this change began
+  std::int64_t claimed_bytes_ = 0;   // since then
+  std::uint64_t outside_bytes_ = 0;  // beside pieces: base, claims and reserve, or as measured if more
   double gdsf_inflation_ = 0;
   double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
   std::vector<Candidate> candidates_;  // the next to leave last; made when needed, used up or for one change

@@ -28,7 +28,7 @@ struct Replayer::Impl {
   std::unique_ptr<Residency> owned_residency;
   Residency& residency{*owned_residency};
   StoredImage stored;
-  ObjectLevels objects{rays};
+  ObjectLevels objects{rays, monitor()};
   ProgramTable programs;
   KeptSelection selection;
   CompressedEdits compressed;
@@ -54,6 +54,12 @@ struct Replayer::Impl {
     if (!pieces) pieces = std::make_unique<Residency>(ResidencyOptions());
     if (options.ray_trees < 1) pieces->track();
     return pieces;
+  }
+
+  /// Of acceleration structures: what they take has no other place to go.
+  [[nodiscard]] MemoryMonitor monitor() {
+    if (!residency.is_limited()) return {};
+    return [this](std::int64_t bytes) { residency.claim(bytes); };
   }
 
   [[nodiscard]] const Image& image() const { return stored.image(); }
@@ -85,8 +91,9 @@ struct Replayer::Impl {
     watch.lap(result.seconds.select);
     const Tracer::TopLevel* scene_level = nullptr;
     if (change.touches_rays()) {
-      if (!level) level = std::make_unique<SceneLevel>(image().view.shadow_bits > 0);
+      if (!level) level = std::make_unique<SceneLevel>(image().view.shadow_bits > 0, monitor());
       scene_level = &level->current(rays, absent);
+      residency.require_floor();
       build_selection(change, rays, absent, level->tracer());
     }
     const GrowScene scene = grow(scene_level);

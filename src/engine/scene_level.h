@@ -2,6 +2,7 @@
 // and put into a small one on top of it, so that the price of an edit follows from the edit.
 #pragma once
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "trace/tracer.h"
@@ -10,7 +11,7 @@ namespace relook {
 
 class SceneLevel {
  public:
-  explicit SceneLevel(bool count_blockers = false) : tracer_(count_blockers) {}
+  explicit SceneLevel(bool count_blockers, MemoryMonitor monitor = {}) : tracer_(count_blockers, std::move(monitor)) {}
   [[nodiscard]] Tracer& tracer() { return tracer_; }
 
   /// Notes objects whose entries in the ray scene are others than before.

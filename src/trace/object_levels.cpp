@@ -10,7 +10,10 @@ constexpr std::size_t kMostKept = 4096;
 
 }  // namespace
 
-ObjectLevels::ObjectLevels(const RayScene& scene) : scene_(scene) { note_changed({}); }
+ObjectLevels::ObjectLevels(const RayScene& scene, MemoryMonitor monitor)
+    : scene_(scene), tracer_(false, std::move(monitor)) {
+  note_changed({});
+}
 
 void ObjectLevels::note_changed(std::span<const ObjectId> objects) {
   if (objects_ != scene_.size() || levels_.size() > kMostKept) {

@@ -15,7 +15,7 @@ namespace relook {
 class ObjectLevels {
  public:
   /// `scene` outlives it.
-  explicit ObjectLevels(const RayScene& scene);
+  explicit ObjectLevels(const RayScene& scene, MemoryMonitor monitor = {});
 
   /// The scene has changed: `objects` are those whose entries in it are others than before, or new. Not while rays are
   /// shot.

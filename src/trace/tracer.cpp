@@ -116,6 +116,11 @@ void reject_hidden(const RTCFilterFunctionNArguments* args) {
   if ((*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)].object == nullptr) args->valid[0] = 0;
 }
 
+bool report_memory(void* monitor, ssize_t bytes, bool /*is_done*/) {
+  (*static_cast<const MemoryMonitor*>(monitor))(bytes);
+  return true;
+}
+
 bool is_traceable(const Ray& ray) {
   constexpr float kLargest = 1e18F;
   const auto is_bounded = [](const Imath::V3f& v) {
@@ -192,6 +197,7 @@ void put_in_order(std::vector<Crossing>& crossings) {
 
 struct Tracer::Impl {
   using Layer = TopLevel::Impl::Layer;
+  MemoryMonitor monitor;
   RTCDevice device = nullptr;
   bool count_blockers;
   struct BottomLevel {
@@ -201,8 +207,10 @@ struct Tracer::Impl {
   std::map<std::pair<const Mesh*, bool>, BottomLevel> bottom_levels;  // by mesh and whether it reports crossings
 
   // At most AVX2: hosts that share a cache must agree in every bit, so they must run the same code.
-  explicit Impl(bool counts) : device(rtcNewDevice("max_isa=avx2")), count_blockers(counts) {
+  Impl(bool counts, MemoryMonitor m)
+      : monitor(std::move(m)), device(rtcNewDevice("max_isa=avx2")), count_blockers(counts) {
     if (device == nullptr) throw std::bad_alloc();
+    if (monitor) rtcSetDeviceMemoryMonitorFunction(device, report_memory, &monitor);
   }
   ~Impl() {
     for (auto& [mesh, level] : bottom_levels) rtcReleaseScene(level.scene);
@@ -303,7 +311,8 @@ Tracer::TopLevel::TopLevel(TopLevel&&) noexcept = default;
 Tracer::TopLevel& Tracer::TopLevel::operator=(TopLevel&&) noexcept = default;
 bool Tracer::TopLevel::empty() const { return !impl_ || (!impl_->meets_base() && !impl_->meets_overlay()); }
 
-Tracer::Tracer(bool count_blockers) : impl_(std::make_unique<Impl>(count_blockers)) {}
+Tracer::Tracer(bool count_blockers, MemoryMonitor monitor)
+    : impl_(std::make_unique<Impl>(count_blockers, std::move(monitor))) {}
 Tracer::~Tracer() = default;
 
 Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {

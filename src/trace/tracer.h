@@ -4,6 +4,7 @@
 // order, layers, thread count, or on what else is in the top level. Coincident hits are ordered by (t, object key,
 // primitive).
 #pragma once
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -41,6 +42,10 @@ struct Crossing {
   bool operator==(const Crossing&) const = default;
 };
 
+/// Told how many bytes acceleration structures are about to take; negative: have given back. Called from any thread;
+/// does not throw.
+using MemoryMonitor = std::function<void(std::int64_t bytes)>;
+
 class Tracer {
  public:
   /// A set of objects that rays can be shot at.
@@ -63,7 +68,7 @@ class Tracer {
   };
 
   /// `count_blockers`: its top levels may be asked for blockers(); passes() is slower then.
-  explicit Tracer(bool count_blockers = false);
+  explicit Tracer(bool count_blockers = false, MemoryMonitor monitor = {});
   ~Tracer();
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;

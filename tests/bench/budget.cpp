@@ -63,7 +63,7 @@ void print_shares(const BenchOptions& options, const Image& image, const Journal
 /// A limit on pieces alone, so that it means the same in every run.
 ResidencyOptions limited(EvictionPolicy policy, std::uint64_t bytes) {
   ResidencyOptions residency;
-  residency.process_bytes = [] { return std::uint64_t{0}; };
+  residency.process_bytes = nullptr;
   residency.policy = policy;
   residency.memory_bytes = bytes;
   residency.spill_folder = std::filesystem::temp_directory_path();
