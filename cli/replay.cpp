@@ -48,7 +48,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
   if (!structures.memory_bytes && arguments.access_log.empty()) return nullptr;
   ResidencyOptions options;
   options.memory_bytes = structures.memory_bytes;
-  const std::uint64_t tile_bytes = thread_count() * (std::uint64_t{20} << 20);  // about what works on tiles
+  const std::uint64_t tile_bytes = thread_count() * (std::uint64_t{26} << 20);  // about what works on tiles and writes
   options.reserve_bytes = options.memory_bytes.value_or(0) / 16 + tile_bytes;
   options.working_bytes = tile_bytes / 2;
   for (const EvictionPolicy policy : kEvictionPolicies)

@@ -16,13 +16,14 @@ constexpr std::size_t kBlockSamples = 4096;
 
 class TileCompressor {
  public:
-  TileCompressor(const UpdatePass& pass, std::size_t tile, CompressedImage& image, Shader& shader)
+  TileCompressor(const UpdatePass& pass, std::size_t tile, CompressedImage& image, TileTools& tools)
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
         image_(image),
-        shader_(shader) {}
+        shader_(tools.shader),
+        block_(tools.block) {}
 
   CompressedTile compress(const Leaves& leaves) {
     const auto start = std::chrono::steady_clock::now();
@@ -60,7 +61,7 @@ class TileCompressor {
   PrimaryRays primaries_;
   CompressedImage& image_;
   Shader& shader_;
-  TreeBlock block_;
+  TreeBlock& block_;
   std::vector<std::uint32_t> roots_;
   GrowCounters counters_;
   CompressedTile tile_;
@@ -150,14 +151,14 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   result.dependent.resize(kept.tiles.size());
   result.touched.resize(kept.tiles.size());
   Room room(compressed_.most_samples());
-  Pool<Shader> shaders;
+  Pool<TileTools> tools;
   parallel_for(tiles.size(), [&](std::size_t i) {
     if (i + kTilesAhead < tiles.size()) expect(kept, tiles[i + kTilesAhead]);
     CompressedTile& tile = kept.tiles[tiles[i]];
     if (!tile.is_valid) {
-      const auto shader = shaders.take([&] { return std::make_unique<Shader>(rays_, programs_); });
+      const auto own = tools.take([&] { return std::make_unique<TileTools>(rays_, programs_); });
       const auto lease = stored_.residency().use(PieceKind::ray_trees, tiles[i]);
-      TileCompressor compressor(pass, tiles[i], kept, *shader);
+      TileCompressor compressor(pass, tiles[i], kept, *own);
       compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
       grown[i] = compressor.counters();
     }

@@ -125,13 +125,13 @@ struct Replayer::Impl {
     std::vector<TileWork> works(image().trees.size());
     parallel_for(works.size(), [&](std::size_t tile) { works[tile] = find_tile_work(pass, tile); });
     watch.lap(result.seconds.test);
-    Pool<Shader> shaders;
+    Pool<TileTools> tools;
     std::vector<TileUpdate> updates = updates_to_do(works);
     const std::vector<std::size_t> order = by_work(updates, works);
     parallel_for(order.size(), [&](std::size_t i) {
       if (i + kTilesAhead < order.size()) expect(updates[order[i + kTilesAhead]].tile);
       TileUpdate& update = updates[order[i]];
-      update = update_tile(pass, update.tile, works[update.tile], shaders);
+      update = update_tile(pass, update.tile, works[update.tile], tools);
       if (keeps_trees) stored.keep_hits(update);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);

@@ -14,13 +14,14 @@ constexpr std::size_t kChunkSamples = 2048;
 
 class TileUpdater {
  public:
-  TileUpdater(const UpdatePass& pass, std::size_t tile, Shader& shader)
+  TileUpdater(const UpdatePass& pass, std::size_t tile, TileTools& tools)
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         has_hits_(has_hits(trees_)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
-        shader_(shader) {
+        shader_(tools.shader),
+        block_(tools.block) {
     result_.tile = tile;
   }
 
@@ -123,7 +124,7 @@ class TileUpdater {
   std::array<const LeafTouches*, kLeaves> by_leaf_{};
   const Touches no_touches_;
   Leaves last_changed_;  // leaves whose last updated tree has changed
-  TreeBlock block_;
+  TreeBlock& block_;
   std::vector<std::uint32_t> roots_, words_, traced_;
   TreeBlock found_;
   std::vector<Hit> found_hits_;
@@ -161,10 +162,10 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
   return work;
 }
 
-TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<Shader>& shaders) {
+TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<TileTools>& tools) {
   const auto lease = pass.residency.use(PieceKind::ray_trees, tile);
-  const auto shader = shaders.take([&] { return std::make_unique<Shader>(pass.grow.scene, pass.programs); });
-  return TileUpdater(pass, tile, *shader).update(work);
+  const auto own = tools.take([&] { return std::make_unique<TileTools>(pass.grow.scene, pass.programs); });
+  return TileUpdater(pass, tile, *own).update(work);
 }
 
 std::vector<TileUpdate> updates_to_do(const std::vector<TileWork>& works) {

@@ -52,9 +52,17 @@ struct UpdatePass {
   bool keeps_trees = true;  // false: an intermediate frame of a drag
 };
 
+/// What work on one tile after another needs; one per thread.
+struct TileTools {
+  TileTools(const RayScene& scene, ProgramTable& programs) : shader(scene, programs) {}
+
+  Shader shader;
+  TreeBlock block;  // empty between tiles; keeps its memory
+};
+
 [[nodiscard]] TileWork find_tile_work(const UpdatePass& pass, std::size_t tile);
 [[nodiscard]] TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,
-                                     Pool<Shader>& shaders);
+                                     Pool<TileTools>& tools);
 
 /// For the tiles with anything to do, in their order, what is to become of them. `works`: by tile.
 [[nodiscard]] std::vector<TileUpdate> updates_to_do(const std::vector<TileWork>& works);

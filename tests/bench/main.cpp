@@ -3,6 +3,7 @@
 // relook_bench all [WIDTHxHEIGHT [SAMPLES]] [--json FILE] [--html FILE]: these on spheres and garden, and their growth.
 // relook_bench growth SCENE JOURNAL: the price of edits at growing numbers of samples.
 // relook_bench budget SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]]: what edits cost when not everything is kept.
+// relook_bench peaks CACHE JOURNAL: the memory of whole replays under five limits.
 #include <cstdio>
 #include <exception>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include "all.h"
 #include "budget.h"
 #include "growth.h"
+#include "peaks.h"
 #include "scene_measures.h"
 
 int main(int count, char** arguments) {
@@ -20,6 +22,8 @@ int main(int count, char** arguments) {
       relook::print_growth(relook::parse_options(count - 1, arguments + 1));
     else if (count > 1 && std::string_view(arguments[1]) == "budget")
       relook::print_budgets(relook::parse_options(count - 1, arguments + 1));
+    else if (count == 4 && std::string_view(arguments[1]) == "peaks")
+      relook::print_peaks(arguments[2], arguments[3]);
     else
       relook::print_scene(relook::parse_options(count, arguments));
     return 0;

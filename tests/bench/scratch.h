@@ -1,5 +1,6 @@
 // A folder for files of the benchmark, and programs it runs.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,6 +20,15 @@ class Scratch {
   std::filesystem::path path_;
 };
 
+/// How a program ended.
+struct ProgramRun {
+  int exit_code = 0;             // -1: by a signal
+  std::uint64_t peak_bytes = 0;  // of its resident set
+  std::string errors;            // what it wrote to standard error
+};
+/// Runs a program (searched for in PATH) and waits. `errors`: a file for its standard error. Throws IoError if it
+/// cannot be started.
+[[nodiscard]] ProgramRun try_program(std::vector<std::string> command, const std::filesystem::path& errors);
 /// Runs a program (searched for in PATH) and waits. Throws IoError unless it exits with 0.
 void run_program(std::vector<std::string> command);
 
