@@ -95,13 +95,18 @@ std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
   try {
     run_steps();
   } catch (const Interrupted&) {
-    report_.interrupted = true;
-    folder_.write_report(report_, journal_);
+    leave_off();
     throw;
   }
   folder_.write_report(report_, journal_);
   if (!arguments_.access_log.empty()) write_file(arguments_.access_log, replayer_.residency().access_log());
   return pixels_different_;
+}
+
+/// Between frames: reports those that are finished. The same command takes the run up again.
+void JournalRun::leave_off() {
+  report_.interrupted = true;
+  folder_.write_report(report_, journal_);
 }
 
 void JournalRun::run_steps() {
@@ -171,7 +176,13 @@ ChangeClass JournalRun::frame(StepReport entry, const Work& work) {
   const auto start = std::chrono::steady_clock::now();
   console_.check_interrupt();
   show_part(entry);
-  const StepResult result = work();
+  StepResult result;
+  try {
+    result = work();
+  } catch (const ResourceError&) {  // with more memory the run goes on from here
+    leave_off();
+    throw;
+  }
   if (entry.reasons.empty()) {
     entry.change = result.classification.change;
     entry.reasons = result.classification.reasons;

@@ -48,6 +48,7 @@ class JournalRun {
 
  private:
   void run_steps();
+  void leave_off();
   void apply_to(std::size_t steps);
   void start_late();
   void resume();

@@ -66,6 +66,10 @@ std::optional<std::string> run_hash(const Arguments& arguments, const Journal& j
   require_sound(read_manifest(arguments.inputs[0], manifest), arguments.inputs[0]);
   RunReport options;
   options.structures = arguments.structures;
+  // Where things are kept shows in no frame: a run that had too little memory goes on with more.
+  options.structures.memory_bytes.reset();
+  options.structures.disk_bytes.reset();
+  options.structures.policy.clear();
   options.float_frames = arguments.float_frames;
   options.layers = arguments.layers;
   options.verify_percent = arguments.verify_percent;

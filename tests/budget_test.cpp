@@ -112,6 +112,29 @@ TEST(Eviction, gives_memory_back) {
   EXPECT_EQ(replayer.resident().color_trees, 0U);
 }
 
+TEST(MissingRayTrees, come_back_once_they_are_used) {
+  SceneState state = test_scene(TestScene::spheres, 80, 60);
+  Image image = preprocessed(state.scene(), {1, 6, 0});
+  for (TileTrees& trees : image.trees) trees = {std::move(trees.paths), {}, {}};  // as of a cache without them
+  const std::string light = state.document().look.at("lights").begin().key();
+  RegionOptions regions;
+  regions.color_trees = 0;
+  Replayer replayer(std::move(state), std::move(image), regions);
+  EXPECT_EQ(replayer.resident().ray_trees, 0U);
+  std::vector<std::uint64_t> rays;
+  for (const int intensity : {4, 5, 6, 7})
+    rays.push_back(replayer.step(replace_edit("/lights/" + light + "/intensity", intensity), "test", ".")
+                       .counters.object_rays);
+  EXPECT_GT(rays.front(), 0U);
+  EXPECT_EQ(rays.back(), 0U);
+  EXPECT_GT(replayer.resident().ray_trees, 0U);
+  const Frame before = replayer.image().frame;
+  const StepResult step =
+      replayer.step(replace_edit("/nodes/Ball/extensions/KHR_node_visibility/visible", false), "test", ".");
+  EXPECT_EQ(step.counters.object_rays, 0U);
+  expect_full_render(replayer, step, before, "hidden");
+}
+
 TEST(ObjectRays, find_every_hit_of_every_tree_again) {
   for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study}) {
     const SceneState state = test_scene(scene, 80, 60);

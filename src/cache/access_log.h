@@ -2,7 +2,8 @@
 // budget. Text, a line an access:
 //   relook-access/1
 //   CHANGE KIND TILE BYTES SECONDS SURFACE_AREA
-// SECONDS: to have the piece back once it has left. A piece comes once a change.
+// SECONDS: to have the piece back once it has left. A piece comes once a change. Of color_trees TILE counts on from one
+// set of parameters to the next.
 #pragma once
 #include <string>
 #include <string_view>

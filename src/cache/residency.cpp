@@ -58,8 +58,8 @@ void Residency::free_copy(Piece& piece) {
   piece.copy.reset();
 }
 
-void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds,
-                    double surface_area) {
+void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes,
+                    std::optional<double> rebuild_seconds, double surface_area) {
   if (!is_watched()) return;
   const std::lock_guard lock(mutex_);
   Piece& p = piece(kind, tile);
@@ -68,7 +68,7 @@ void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, doubl
   p.state = State::resident;
   p.facts.bytes = std::max<std::uint64_t>(bytes, 1);
   p.facts.surface_area = surface_area;
-  p.rebuild_seconds = rebuild_seconds;
+  p.rebuild_seconds = rebuild_seconds.value_or(p.rebuild_seconds);
   resident_bytes_ += p.facts.bytes;
   ++p.pins;
   make_room_locked(0);
@@ -105,6 +105,21 @@ void Residency::expect(PieceKind kind, std::size_t tile) {
   if (extent) spill_->expect(*extent);
 }
 
+bool Residency::is_worth_room(PieceKind kind, std::size_t tile, std::uint64_t bytes) {
+  if (!is_limited()) return true;
+  const std::lock_guard lock(mutex_);
+  const Piece& p = piece(kind, tile);
+  if (p.state != State::missing) return false;
+  PieceFacts facts = p.facts;
+  if (p.rebuild_seconds == 0) facts.bytes = std::max<std::uint64_t>(bytes, 1);  // never seen
+  if (fits(facts.bytes)) return true;
+  facts.return_seconds = return_seconds(p);
+  if (facts.last_use == change_) facts.last_use = p.use_before;
+  const double weight = eviction_weight(options_.policy, facts, change_);
+  if (candidates_.empty()) list_candidates();
+  return !candidates_.empty() && candidates_.back().weight < weight;
+}
+
 void Residency::release(PieceKind kind, std::size_t tile) {
   const std::lock_guard lock(mutex_);
   --piece(kind, tile).pins;
@@ -113,14 +128,25 @@ void Residency::release(PieceKind kind, std::size_t tile) {
 void Residency::touch(PieceKind kind, std::size_t tile) {
   PieceFacts& facts = piece(kind, tile).facts;
   if (facts.last_use == change_ && facts.uses > 0) return;
-  facts.last_use = change_;
+  piece(kind, tile).use_before = std::exchange(facts.last_use, change_);
   facts.gdsf_inflation = gdsf_inflation_;
   ++facts.uses;
+  if (options_.logs_accesses) log_use(kind_name(kind), tile, facts, return_seconds(piece(kind, tile)));
+}
+
+void Residency::note_use_of_other(std::string_view kind, std::size_t number, std::uint64_t bytes, double seconds) {
   if (!options_.logs_accesses) return;
+  const std::lock_guard lock(mutex_);
+  PieceFacts facts;
+  facts.bytes = bytes;
+  log_use(kind, number, facts, seconds);
+}
+
+void Residency::log_use(std::string_view kind, std::size_t tile, const PieceFacts& facts, double seconds) {
   char line[160];
   std::snprintf(line, sizeof line, "%llu %s %zu %llu %.6g %.6g\n", static_cast<unsigned long long>(change_),
-                std::string(kind_name(kind)).c_str(), tile, static_cast<unsigned long long>(facts.bytes),
-                return_seconds(piece(kind, tile)), facts.surface_area);
+                std::string(kind).c_str(), tile, static_cast<unsigned long long>(facts.bytes), seconds,
+                facts.surface_area);
   log_ += line;
 }
 
@@ -163,7 +189,6 @@ void Residency::measure_outside() {
 }
 
 void Residency::begin_change() {
-  if (!is_watched()) return;
   const std::lock_guard lock(mutex_);
   ++change_;
   candidates_.clear();
@@ -230,7 +255,8 @@ bool Residency::make_room_locked(std::uint64_t bytes) {
 void Residency::list_candidates() {
   candidates_.clear();
   victims_.clear();
-  for (std::size_t k = 0; k < kPieceKinds; ++k)
+  for (std::size_t k = 0; k < kPieceKinds; ++k) {
+    if (!spill_ && !kinds_[k].handler.may_be_missing) continue;  // nowhere to go
     for (std::size_t tile = 0; tile < kinds_[k].pieces.size(); ++tile) {
       Piece& p = kinds_[k].pieces[tile];
       if (p.state != State::resident || p.pins > 0) continue;
@@ -238,6 +264,7 @@ void Residency::list_candidates() {
       candidates_.push_back(
           {eviction_weight(options_.policy, p.facts, change_), static_cast<PieceKind>(k), tile, ~std::size_t{0}});
     }
+  }
   if (list_others_) list_others_(victims_);
   for (std::size_t i = 0; i < victims_.size(); ++i)
     candidates_.push_back({victims_[i].weight, PieceKind::ray_trees, 0, i});

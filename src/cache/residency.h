@@ -89,12 +89,17 @@ class Residency {
   [[nodiscard]] bool is_watched() const { return is_limited() || options_.logs_accesses || tracks_pieces_; }
 
   /// The piece has new content and is resident. May evict other pieces. `rebuild_seconds`: measured or estimated from
-  /// what has been measured.
-  void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds, double surface_area = 1);
+  /// what has been measured; none: as before.
+  void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::optional<double> rebuild_seconds,
+           double surface_area = 1);
   /// Makes the piece resident unless it is missing, and keeps it so.
   [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
   /// The piece will be used soon: if it is on disk, the system begins to fetch it. Nothing else changes.
   void expect(PieceKind kind, std::size_t tile);
+  /// Is a missing piece worth being worked out again and kept? Where room is short, only if its last use before this
+  /// change gives it more weight than what would have to leave: of pieces that are used in turn and do not fit together,
+  /// some stay instead of each making the next one leave. `bytes`: about; if it was there before, that counts.
+  [[nodiscard]] bool is_worth_room(PieceKind kind, std::size_t tile, std::uint64_t bytes);
   /// Drops a piece that may be missing, with its copy.
   void forget(PieceKind kind, std::size_t tile);
 
@@ -111,6 +116,10 @@ class Residency {
   /// What has happened since the last call.
   [[nodiscard]] PieceCounts take_counts();
   [[nodiscard]] std::uint64_t spilled_bytes() const { return spill_ ? spill_->bytes() : 0; }
+  /// The number of changes so far.
+  [[nodiscard]] std::uint64_t change() const { return change_; }
+  /// Something outside of Residency that could leave memory is used: for the access log. `number`: which of its kind.
+  void note_use_of_other(std::string_view kind, std::size_t number, std::uint64_t bytes, double seconds);
   /// See cache/access_log.h.
   [[nodiscard]] std::string access_log() const { return std::string(kAccessLogHeader) + log_; }
 
@@ -120,6 +129,7 @@ class Residency {
     State state = State::missing;
     PieceFacts facts;
     double rebuild_seconds = 0;
+    std::uint64_t use_before = 0;  // the last change before facts.last_use that used it
     std::uint32_t pins = 0;
     std::optional<SpillFile::Extent> copy;
   };
@@ -139,6 +149,7 @@ class Residency {
   }
   void release(PieceKind kind, std::size_t tile);
   void touch(PieceKind kind, std::size_t tile);
+  void log_use(std::string_view kind, std::size_t tile, const PieceFacts& facts, double seconds);
   [[nodiscard]] std::uint64_t known_bytes() const;
   [[nodiscard]] bool fits(std::uint64_t bytes) const;
   [[nodiscard]] std::uint64_t outside_now() const;

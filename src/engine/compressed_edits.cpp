@@ -21,6 +21,15 @@ bool is_outdated(const CompressedTile& tile, const ColorChange& change) {
   });
 }
 
+double weight(EvictionPolicy policy, const CompressedImage& image, const CompressedTile& tile, std::uint64_t change) {
+  PieceFacts facts;
+  facts.bytes = std::max<std::size_t>(tile.bytes, 1);
+  facts.return_seconds = tile.build_seconds;
+  facts.last_use = image.last_change;
+  facts.uses = image.uses;
+  return eviction_weight(policy, facts, change);
+}
+
 }  // namespace
 
 bool CompressedImage::is_valid() const { return std::ranges::all_of(tiles, &CompressedTile::is_valid); }
@@ -31,13 +40,13 @@ const ParameterSet* CompressedEdits::set_for(const ParameterSet& changed) const 
   return found != chosen_->end() ? &*found : nullptr;
 }
 
-CompressedImage& CompressedEdits::of(const ParameterSet& parameters) {
+CompressedImage& CompressedEdits::of(const ParameterSet& parameters, std::uint64_t change) {
   auto found = std::ranges::find_if(images_, [&](const auto& image) { return image->parameters == parameters; });
   if (found == images_.end()) {
-    images_.push_back(std::make_unique<CompressedImage>(parameters, tile_count_));
+    images_.push_back(std::make_unique<CompressedImage>(parameters, tile_count_, sets_++));
     found = std::prev(images_.end());
   }
-  (*found)->last_step = ++step_;
+  (*found)->last_change = change_ = change;
   ++(*found)->uses;
   at_work_ = found->get();
   return **found;
@@ -76,21 +85,12 @@ void CompressedEdits::clear() {
   erase([](const CompressedImage&) { return true; });
 }
 
-double CompressedEdits::weight(EvictionPolicy policy, const CompressedImage& image, const CompressedTile& tile) const {
-  PieceFacts facts;
-  facts.bytes = std::max<std::size_t>(tile.bytes, 1);
-  facts.return_seconds = tile.build_seconds;
-  facts.last_use = image.last_step;
-  facts.uses = image.uses;
-  return eviction_weight(policy, facts, step_);
-}
-
-void CompressedEdits::list_victims(EvictionPolicy policy, std::vector<Victim>& victims) {
+void CompressedEdits::list_victims(EvictionPolicy policy, std::uint64_t change, std::vector<Victim>& victims) {
   for (const auto& image : images_) {
     if (image.get() == at_work_) continue;
     for (CompressedTile& tile : image->tiles)
       if (!tile.samples.empty())
-        victims.push_back({weight(policy, *image, tile), [this, &tile] {
+        victims.push_back({weight(policy, *image, tile, change), [this, &tile] {
                              const std::uint64_t samples = tile.samples.size();
                              drop(tile);
                              return samples;
@@ -111,7 +111,7 @@ std::uint64_t CompressedEdits::trim() {
     for (const auto& image : images_)
       for (CompressedTile& tile : image->tiles) {
         if (tile.samples.empty()) continue;
-        pieces.push_back({&tile, weight(EvictionPolicy::weight, *image, tile)});
+        pieces.push_back({&tile, weight(EvictionPolicy::weight, *image, tile, change_)});
       }
     std::ranges::sort(pieces, {}, &Piece::weight);
     for (const Piece& piece : pieces) {
@@ -126,7 +126,7 @@ std::uint64_t CompressedEdits::trim() {
     return is_empty && !image.is_valid();
   });
   while (images_.size() > kMostSets) {
-    const auto oldest = std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_step; });
+    const auto oldest = std::ranges::min_element(images_, {}, [](const auto& image) { return image->last_change; });
     erase([gone = oldest->get()](const CompressedImage& image) { return &image == gone; });
   }
   return before - samples();

@@ -27,14 +27,16 @@ struct CompressedTile {
 
 /// Those of one set of parameters.
 struct CompressedImage {
-  CompressedImage(ParameterSet of, std::size_t tile_count) : parameters(std::move(of)), tiles(tile_count) {}
+  CompressedImage(ParameterSet of, std::size_t tile_count, std::size_t place)
+      : number(place), parameters(std::move(of)), tiles(tile_count) {}
   /// Is no tile to be built?
   [[nodiscard]] bool is_valid() const;
 
+  std::size_t number;  // of the sets so far
   ParameterSet parameters;
   SplitTable splits;
   std::vector<CompressedTile> tiles;
-  std::uint64_t last_step = 0, uses = 0;
+  std::uint64_t last_change = 0, uses = 0;
 };
 
 class CompressedEdits {
@@ -47,8 +49,8 @@ class CompressedEdits {
   void choose(std::vector<ParameterSet> sets) { chosen_ = std::move(sets); }
   /// The set whose trees an edit of `changed` is to use; null: none, it goes through the ray trees.
   [[nodiscard]] const ParameterSet* set_for(const ParameterSet& changed) const;
-  /// What is kept for the parameters, perhaps nothing yet. Valid until trim().
-  [[nodiscard]] CompressedImage& of(const ParameterSet& parameters);
+  /// What is kept for the parameters, perhaps nothing yet. Valid until trim(). `change`: the number of changes so far.
+  [[nodiscard]] CompressedImage& of(const ParameterSet& parameters, std::uint64_t change);
 
   /// To be called with every change before its step's own trees are used.
   void note_colors(const ColorChange& change);
@@ -65,17 +67,17 @@ class CompressedEdits {
   std::uint64_t trim();
 
   /// What could leave memory at once: not what of() gave and trim() has not taken back.
-  void list_victims(EvictionPolicy policy, std::vector<Victim>& victims);
+  void list_victims(EvictionPolicy policy, std::uint64_t change, std::vector<Victim>& victims);
 
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
   [[nodiscard]] std::uint64_t samples() const;
 
  private:
   void erase(const std::function<bool(const CompressedImage&)>& condition);
-  [[nodiscard]] double weight(EvictionPolicy policy, const CompressedImage& image, const CompressedTile& tile) const;
 
   std::size_t tile_count_;
-  std::uint64_t most_samples_, step_ = 0;
+  std::uint64_t most_samples_, change_ = 0;
+  std::size_t sets_ = 0;  // so far
   std::atomic<std::uint64_t> bytes_ = 0;
   std::vector<std::unique_ptr<CompressedImage>> images_;
   std::optional<std::vector<ParameterSet>> chosen_;  // none: any set may be kept

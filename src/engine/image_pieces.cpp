@@ -8,13 +8,6 @@
 #include "base/memory.h"
 
 namespace relook {
-namespace {
-
-/// Until it has been measured: about what a ray against one object takes.
-constexpr double kObjectRaySeconds = 5e-7;
-
-}  // namespace
-
 std::uint64_t hit_bytes(const TileTrees& trees) {
   return trees.first_hit.capacity() * sizeof(std::uint32_t) + trees.hits.capacity() * sizeof(Hit);
 }
@@ -71,10 +64,9 @@ std::vector<std::size_t> tiles_beyond(double share, const std::vector<TileTrees>
   return tiles;
 }
 
-void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees) {
+void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees, double hit_seconds) {
   if (has_hits(trees))
-    residency.set(PieceKind::ray_trees, tile, hit_bytes(trees),
-                  static_cast<double>(trees.hits.size()) * kObjectRaySeconds);
+    residency.set(PieceKind::ray_trees, tile, hit_bytes(trees), static_cast<double>(trees.hits.size()) * hit_seconds);
 }
 
 void note_colors(Residency& residency, std::size_t tile, const std::vector<Rgba>& colors) {

@@ -122,7 +122,7 @@ void Recolorer::expect(const CompressedImage& kept, std::size_t tile) const {
 }
 
 void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch) {
-  CompressedImage& kept = compressed_.of(change.colors.parameters);
+  CompressedImage& kept = compressed_.of(change.colors.parameters, stored_.residency().change());
   const std::vector<Leaves>* known_leaves = selection_.leaves(change);
   Search found = search(change, kept, result, watch);
   const Image& image = stored_.image();
@@ -158,14 +158,17 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
     if (!tile.is_valid) {
       const auto own = tools.take([&] { return std::make_unique<TileTools>(rays_, programs_); });
       const auto lease = stored_.residency().use(PieceKind::ray_trees, tiles[i]);
+      grown[i] = stored_.bring_back_hits(tiles[i], found.works[tiles[i]].leaves, found.tasks, grow);
       TileCompressor compressor(pass, tiles[i], kept, *own);
       compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
-      grown[i] = compressor.counters();
+      grown[i] += compressor.counters();
     }
     if (evaluates) {
       const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
       changed[i] = recolor_tile(tile, tiles[i], rays_.scene(), stored_, *memory);
     }
+    stored_.residency().note_use_of_other("color_trees", kept.number * kept.tiles.size() + tiles[i], tile.bytes,
+                                          tile.build_seconds);
     samples[i] = tile.samples.size();
     result.dependent[tiles[i]] = tile.leaves;
     if (!room.take(samples[i]) || !stored_.residency().make_room(0))

@@ -80,9 +80,10 @@ void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, cons
   parallel_for(tunnels_.size(), [&](std::size_t tile) {
     const auto start = Clock::now();
     LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
-    keep(tile,
-         TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); }),
-         seconds_since(start));
+    TileTunnels built =
+        TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
+    const double seconds = seconds_since(start);
+    keep(tile, std::move(built), seconds);
   });
   const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
   image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
@@ -101,7 +102,7 @@ void ImageRegions::add_pieces(std::size_t tiles) {
   residency_->add_kind(PieceKind::tunnels, tiles, std::move(handler));
 }
 
-void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, double seconds) {
+void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, std::optional<double> seconds) {
   give_back(tile_sections_[tile]);
   for (std::size_t k = 0; k < tunnels.count(kRoot); ++k)
     enclose(tile_sections_[tile], tunnels.tunnel(kRoot, k).sections);
@@ -123,10 +124,11 @@ void ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t
   const Residency::Lease tunnels_lease = lease(PieceKind::tunnels, tile);
   const auto start = Clock::now();
   LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
-  keep(tile,
-       tunnels_[tile].rebuilt(tunnels_[tile].empty() ? all_leaves() : changed, options_.tunnels,
-                              [&](std::uint32_t leaf) { return leaves.of(leaf); }),
-       seconds_since(start));
+  const bool is_new = tunnels_[tile].empty();
+  TileTunnels rebuilt = tunnels_[tile].rebuilt(is_new ? all_leaves() : changed, options_.tunnels,
+                                               [&](std::uint32_t leaf) { return leaves.of(leaf); });
+  const double seconds = seconds_since(start);
+  keep(tile, std::move(rebuilt), is_new ? std::optional(seconds) : std::nullopt);
 }
 
 std::size_t ImageRegions::group_bytes() const {

@@ -36,8 +36,8 @@ class ImageRegions {
   [[nodiscard]] bool has_groups() const { return !groups_.empty(); }
   [[nodiscard]] bool has_tunnels() const { return !tunnels_.empty(); }
 
-  /// After the trees of some leaves of a tile have changed: its groups and, if there are any, its tunnels. Tiles may be
-  /// updated at the same time; update_image() with all of them follows.
+  /// After the trees of some leaves of a tile have changed: its groups and, if tunnels have been built, its tunnels, all
+  /// of them if they are missing. Tiles may be updated at the same time; update_image() with all of them follows.
   void update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
               const ClassOf& class_of);
 
@@ -59,8 +59,8 @@ class ImageRegions {
   [[nodiscard]] Residency::Lease lease(PieceKind kind, std::size_t tile) {
     return residency_ != nullptr ? residency_->use(kind, tile) : Residency::Lease();
   }
-  /// Takes over the tunnels of a tile, which `seconds` were spent on.
-  void keep(std::size_t tile, TileTunnels tunnels, double seconds);
+  /// Takes over the tunnels of a tile. `seconds`: that all of them took; none: some were there before.
+  void keep(std::size_t tile, TileTunnels tunnels, std::optional<double> seconds);
   void enclose_tile(std::size_t tile, Sections& tunnel) const;
   [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const;
   RegionOptions options_;

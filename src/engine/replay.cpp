@@ -4,7 +4,6 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "engine/image_pieces.h"
 #include "engine/kept_selection.h"
 #include "engine/recolor.h"
 #include "engine/scene_level.h"
@@ -46,7 +45,7 @@ struct Replayer::Impl {
                    static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {
     residency.set_others(
         [this] { return compressed.bytes(); },
-        [this](std::vector<Victim>& victims) { compressed.list_victims(residency.policy(), victims); });
+        [this](std::vector<Victim>& victims) { compressed.list_victims(residency.policy(), residency.change(), victims); });
     stored.forget_hits(options.ray_trees);
   }
 
@@ -131,7 +130,10 @@ struct Replayer::Impl {
     parallel_for(order.size(), [&](std::size_t i) {
       if (i + kTilesAhead < order.size()) expect(updates[order[i + kTilesAhead]].tile);
       TileUpdate& update = updates[order[i]];
+      const auto lease = residency.use(PieceKind::ray_trees, update.tile);
+      const GrowCounters found = stored.bring_back_hits(update.tile, works[update.tile].leaves, tasks, scene);
       update = update_tile(pass, update.tile, works[update.tile], tools);
+      update.counters += found;
       if (keeps_trees) stored.keep_hits(update);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
@@ -210,6 +212,7 @@ struct Replayer::Impl {
   void keep_trees(const std::vector<TileUpdate>& updates, const StepChange& change) {
     if (!change.touches_rays()) return;
     stored.keep_paths(updates, grow(nullptr), change.rays.lights_changed);
+    stored.bring_back_tunnels(updates, grow(nullptr));
     for (const TileUpdate& update : updates)
       if (!update.packed.empty()) compressed.note_trees(update.tile);
   }
@@ -367,6 +370,8 @@ struct Replayer::Impl {
     }
     refresh_pixels(updates, others, result);
     watch.lap(result.seconds.evaluate);
+    stored.bring_back_tunnels(updates, grow(nullptr));
+    watch.lap(result.seconds.update);
   }
 
   /// Last step: the selection goes into the ray trees; the frame stays as it is.

@@ -81,7 +81,7 @@ struct RunReport {
   std::optional<double> full_render_seconds;
   CacheSizes cache;
   std::vector<std::string> cache_damage;  // sentences: what was damaged or missing and traced again
-  bool interrupted = false;               // ended by a signal: later steps are missing
+  bool interrupted = false;               // ended by a signal or for want of memory: later steps are missing
   std::vector<Json>
       resumed;  // step_json() of frames that an earlier run of the same inputs has finished; before `steps`
   double resume_seconds = 0;  // to get to where that run was

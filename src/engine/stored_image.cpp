@@ -1,12 +1,12 @@
 #include "engine/stored_image.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstring>
 #include <numeric>
 
 #include "base/memory.h"
 #include "base/parallel.h"
-#include "engine/image_pieces.h"
 #include "engine/sampling.h"
 
 namespace relook {
@@ -30,10 +30,12 @@ TileTrees with_hits_of(const TileUpdate& update, TileTrees trees) {
   next.hits.reserve(trees.hits.size());
   std::size_t k = 0;
   for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
-    std::span<const Hit> hits = trees.hits_of(sample);
+    std::span<const Hit> hits;
     if (k < update.packed.size() && update.packed[k] == sample) {
       hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
       ++k;
+    } else {
+      hits = trees.hits_of(sample);
     }
     next.hits.insert(next.hits.end(), hits.begin(), hits.end());
     next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
@@ -53,6 +55,8 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
       atoms_(std::move(atoms)),
       regions_(options, &residency),
       tile_segments_(image_.trees.size(), 0),
+      stays_without_hits_(image_.trees.size(), 0),
+      found_again_(image_.trees.size(), 0),
       compact_paths_(image_.paths.size()) {
   index_paths();
   parallel_for(image_.trees.size(), [&](std::size_t tile) { count_segments(tile); });
@@ -74,8 +78,53 @@ void StoredImage::add_pieces() {
 }
 
 void StoredImage::forget_hits(double share) {
-  for (const std::size_t tile : tiles_beyond(share, image_.trees, tile_segments_))
+  for (const std::size_t tile : tiles_beyond(share, image_.trees, tile_segments_)) {
     residency_.forget(PieceKind::ray_trees, tile);
+    stays_without_hits_[tile] = 1;
+  }
+}
+
+GrowCounters StoredImage::bring_back_hits(std::size_t tile, const Leaves& leaves, const PathTasks& tasks,
+                                          const GrowScene& scene) {
+  TileTrees& trees = image_.trees[tile];
+  GrowCounters counters;
+  if (has_hits(trees) || stays_without_hits_[tile] != 0) return counters;
+  const bool are_valid = std::ranges::none_of(
+      trees.paths, [&](PathId path) { return (tasks.of_path[path.index()] & kUpdateTree) != 0; });
+  if (!are_valid) return counters;
+  const std::size_t samples = trees.paths.size();
+  const auto wanted = leaves.count() * kLeafSize * kLeafSize * image_.view.samples;
+  found_again_[tile] = static_cast<std::uint32_t>(std::min(found_again_[tile] + wanted, samples));
+  if (found_again_[tile] < samples) return counters;
+  if (!residency_.is_worth_room(PieceKind::ray_trees, tile, tile_segments_[tile] * sizeof(Hit))) return counters;
+  found_again_[tile] = 0;
+  const auto start = std::chrono::steady_clock::now();
+  find_hits(tile, scene, counters);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!trees.hits.empty())
+    hit_seconds_ = hit_seconds_ + 0.1 * (seconds / static_cast<double>(trees.hits.size()) - hit_seconds_);
+  note_trees(residency_, tile, trees, hit_seconds_);
+  return counters;
+}
+
+void StoredImage::find_hits(std::size_t tile, const GrowScene& scene, GrowCounters& counters) {
+  TileTrees& trees = image_.trees[tile];
+  const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
+  const PrimaryRays primaries(scene.scene.scene().camera, image_.view);
+  std::vector<Hit> hits;
+  std::vector<std::uint32_t> first_hit{0}, words;
+  TreeBlock block;
+  for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
+    block.clear();
+    words.clear();
+    const StoredTree stored{PathCursor(image_.paths.words(trees.paths[sample]), layout()), nullptr};
+    const std::uint32_t root = expand_tree(scene, primaries.ray(rect, sample), sample, stored, block, counters);
+    pack(block, root, layout(), words, hits);
+    first_hit.push_back(static_cast<std::uint32_t>(hits.size()));
+  }
+  hits.shrink_to_fit();
+  trees.hits = std::move(hits);
+  trees.first_hit = std::move(first_hit);
 }
 
 Resident StoredImage::resident() const {
@@ -117,10 +166,11 @@ void StoredImage::count_segments(std::size_t tile) {
 
 void StoredImage::keep_hits(TileUpdate& update) {
   const auto lease = residency_.use(PieceKind::ray_trees, update.tile);
-  if (!update.packed.empty() && has_hits(image_.trees[update.tile])) {
-    TileTrees& trees = image_.trees[update.tile];
+  TileTrees& trees = image_.trees[update.tile];
+  const bool is_whole = update.packed.size() == trees.paths.size() && stays_without_hits_[update.tile] == 0;
+  if (!update.packed.empty() && (has_hits(trees) || is_whole)) {
     trees = with_hits_of(update, std::move(trees));
-    note_trees(residency_, update.tile, trees);
+    note_trees(residency_, update.tile, trees, hit_seconds_);
   }
   give_back(update.hits);
   give_back(update.first_hit);
@@ -159,6 +209,15 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
   segments_ = 0;
   for (std::uint64_t count : tile_segments_) segments_ += count;
   if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene);
+}
+
+void StoredImage::bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene) {
+  parallel_for(updates.size(), [&](std::size_t k) {
+    const TileUpdate& update = updates[k];
+    if (update.missed_tunnels && update.packed.empty() &&
+        residency_.is_worth_room(PieceKind::tunnels, update.tile, 0))
+      regions_.update(image_, scene, update.tile, {}, class_of());
+  });
 }
 
 Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {

@@ -1,6 +1,7 @@
 // What is kept of an image through a series of edits: paths, trees, colours, frame, and what helps to find things in
 // them. Brought up to date with what the passes over its tiles have found.
 #pragma once
+#include <atomic>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "engine/changed_pixels.h"
 #include "engine/counters.h"
 #include "engine/image.h"
+#include "engine/image_pieces.h"
 #include "engine/path_classes.h"
 #include "engine/path_index.h"
 #include "engine/path_tasks.h"
@@ -52,8 +54,13 @@ class StoredImage {
   /// Requires: the trees hold in `scene`.
   void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
 
-  /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees.
+  /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees. The others
+  /// stay without.
   void forget_hits(double share);
+  /// A tile is about to be worked on at some leaves. If its hits are missing and have been, or will be, found again
+  /// sample by sample as often as the tile has samples, all are found now, and kept; not where the change reaches the
+  /// trees themselves. Tiles may be done at the same time. Requires: its ray trees are leased.
+  GrowCounters bring_back_hits(std::size_t tile, const Leaves& leaves, const PathTasks& tasks, const GrowScene& scene);
   /// Takes over the hits and colours of an update, which has none any more. Tiles may be done at the same time; the
   /// tile's paths are the old ones until keep_paths().
   void keep_hits(TileUpdate& update);
@@ -61,6 +68,8 @@ class StoredImage {
   /// the trees. `scene`: in which they hold. `lights_changed`: all samples have been packed anew, since the form of
   /// paths follows the light order.
   void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
+  /// Of tiles that missed theirs and have no changed trees, which keep_paths() sees to. `scene`: in which trees hold.
+  void bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene);
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
   void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
   /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
@@ -77,6 +86,7 @@ class StoredImage {
   void classify_paths(const GrowScene& scene);
   void count_segments(std::size_t tile);
   void drop_unused_paths(const GrowScene& scene);
+  void find_hits(std::size_t tile, const GrowScene& scene, GrowCounters& counters);
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
 
   Image image_;
@@ -87,6 +97,9 @@ class StoredImage {
   std::vector<ObjectId> atoms_;
   ImageRegions regions_;
   std::vector<std::uint64_t> tile_segments_;
+  std::vector<std::uint8_t> stays_without_hits_;  // by tile
+  std::vector<std::uint32_t> found_again_;        // by tile: samples, since its hits have been missing
+  std::atomic<double> hit_seconds_ = kHitSeconds;  // measured as hits are found again
   std::uint64_t segments_ = 0, samples_ = 0;
   std::size_t compact_paths_;  // size of the path table when it last held no unused paths
 };

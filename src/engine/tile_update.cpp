@@ -27,6 +27,7 @@ class TileUpdater {
 
   TileUpdate update(const TileWork& work) {
     tests_all_ = work.tests_all;
+    result_.missed_tunnels = work.tests_all && p_.tunnel_test != nullptr;
     for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
     for_each_sample(rect_, p_.image.view, work.leaves,
                     [&](std::uint32_t sample, std::uint32_t leaf) { update_sample(sample, leaf); });
@@ -42,7 +43,7 @@ class TileUpdater {
     if (task == 0 && touches == nullptr && !tests_all_) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     bool update = (task & kUpdateTree) != 0 || tests_all_;
-    const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr);
+    const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr, task);
     // Where the last tree has changed, this one probably has, too: no use in asking first.
     if (!update && touches != nullptr)
       update = stored.hits == nullptr || last_changed_.test(leaf) || probe(*touches, primary, stored);
@@ -70,12 +71,13 @@ class TileUpdater {
     if (roots_.size() == kChunkSamples) flush();
   }
 
-  /// A tree whose hits are not kept cannot be compared with the scene before a change: it is traced anew (null). Only
-  /// what a drag shows on top of the trees leaves them valid, so that their hits can be found first.
-  StoredTree stored_tree(PathId path, const SpawnedRay& primary, std::uint32_t sample, bool may_update) {
+  /// Hits that are not kept are found first where the tree may be compared with the scene. After a change of the
+  /// objects that it names they cannot be: it is traced anew (null). What a drag shows on top leaves all trees valid.
+  StoredTree stored_tree(PathId path, const SpawnedRay& primary, std::uint32_t sample, bool may_update,
+                         std::uint8_t task) {
     const PathCursor cursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits});
     if (has_hits_) return {cursor, trees_.hits_of(sample).data()};
-    if (!may_update || p_.keeps_trees) return {cursor, nullptr};
+    if (!may_update || (p_.keeps_trees && (task & kUpdateTree) != 0)) return {cursor, nullptr};
     found_.clear();
     words_.clear();
     found_hits_.clear();
@@ -163,7 +165,6 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
 }
 
 TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<TileTools>& tools) {
-  const auto lease = pass.residency.use(PieceKind::ray_trees, tile);
   const auto own = tools.take([&] { return std::make_unique<TileTools>(pass.grow.scene, pass.programs); });
   return TileUpdater(pass, tile, *own).update(work);
 }

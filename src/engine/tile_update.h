@@ -33,6 +33,7 @@ struct TileUpdate {
   std::vector<Hit> hits;
   std::vector<std::uint32_t> first_hit{0};
   GrowCounters counters;
+  bool missed_tunnels = false;  // there were none to tell what to test
 };
 
 /// What all tiles of a pass have in common.
@@ -61,6 +62,7 @@ struct TileTools {
 };
 
 [[nodiscard]] TileWork find_tile_work(const UpdatePass& pass, std::size_t tile);
+/// Requires: the tile's ray trees are leased.
 [[nodiscard]] TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,
                                      Pool<TileTools>& tools);
 

@@ -19,6 +19,15 @@ struct GrowCounters {
   std::uint64_t ray_tests = 0;       // stored segments tested against the selection
   std::uint64_t object_rays = 0;     // rays and shadow segments against one known object
   std::uint64_t trees_rebuilt = 0;   // whose hits these rays have found again
+
+  GrowCounters& operator+=(const GrowCounters& other) {
+    ray_updates += other.ray_updates;
+    shadow_updates += other.shadow_updates;
+    ray_tests += other.ray_tests;
+    object_rays += other.object_rays;
+    trees_rebuilt += other.trees_rebuilt;
+    return *this;
+  }
 };
 
 /// What all growing needs.

@@ -21,8 +21,11 @@ class Run {
   Run(const BenchOptions& options, const Image& image, const RegionOptions& regions, ResidencyOptions residency)
       : replayer_(load_scene(options), image, regions, std::make_unique<Residency>(std::move(residency))) {}
 
-  double step(const JournalStep& step, const Journal& journal) {
-    return timed(replayer_, StepKind::step, whole_edit(step), journal).seconds;
+  double step(const Edit& edit, const Journal& journal) {
+    const double seconds = timed(replayer_, StepKind::step, edit, journal).seconds;
+    const Resident resident = replayer_.resident();
+    most_bytes_ = std::max(most_bytes_, resident.ray_trees + resident.color_trees + resident.tunnels);
+    return seconds;
   }
   /// Rounds of all edits, and then all of them taken back.
   double all(const Journal& journal) {
@@ -31,16 +34,19 @@ class Run {
       std::vector<Edit> back;
       for (const JournalStep& one : journal.steps) {
         back.push_back(inverse_of(whole_edit(one), replayer_.state().document().look));
-        seconds += step(one, journal);
+        seconds += step(whole_edit(one), journal);
       }
-      for (; !back.empty(); back.pop_back()) seconds += timed(replayer_, StepKind::step, back.back(), journal).seconds;
+      for (; !back.empty(); back.pop_back()) seconds += step(back.back(), journal);
     }
     return seconds;
   }
   [[nodiscard]] const Replayer& replayer() const { return replayer_; }
+  /// Of pieces, after any edit so far.
+  [[nodiscard]] std::uint64_t most_bytes() const { return most_bytes_; }
 
  private:
   Replayer replayer_;
+  std::uint64_t most_bytes_ = 0;
 };
 
 void print_shares(const BenchOptions& options, const Image& image, const Journal& journal, double full_seconds) {
@@ -55,45 +61,63 @@ void print_shares(const BenchOptions& options, const Image& image, const Journal
   }
   for (const JournalStep& step : journal.steps) {
     std::printf("  %-34s", step.name.c_str());
-    for (Run& run : runs) std::printf(" %10.1f", full_seconds / run.step(step, journal));
+    for (Run& run : runs) std::printf(" %10.1f", full_seconds / run.step(whole_edit(step), journal));
     std::printf("\n");
   }
 }
 
+/// What has left comes back from disk, or is worked out again.
+enum class Tier : std::uint8_t { disk, rebuilt };
+
 /// A limit on pieces alone, so that it means the same in every run.
-ResidencyOptions limited(EvictionPolicy policy, std::uint64_t bytes) {
+ResidencyOptions limited(Tier tier, EvictionPolicy policy, std::uint64_t bytes) {
   ResidencyOptions residency;
   residency.process_bytes = nullptr;
   residency.policy = policy;
   residency.memory_bytes = bytes;
-  residency.spill_folder = std::filesystem::temp_directory_path();
+  if (tier == Tier::disk) residency.spill_folder = std::filesystem::temp_directory_path();
   return residency;
 }
 
-void print_curve(const BenchOptions& options, const Image& image, const Journal& journal) {
+/// What pieces would take that never leave, and what was used when.
+struct Demand {
+  std::uint64_t bytes = 0;  // at most, after any edit
+  AccessLog log;
+};
+
+void print_curve(const BenchOptions& options, const Image& image, const Journal& journal, Tier tier,
+                 const Demand& demand) {
+  const bool is_disk = tier == Tier::disk;
+  std::printf("\n  what has left is %s: seconds by memory for pieces and by policy%s\n  %8s",
+              is_disk ? "read back" : "worked out again", is_disk ? "" : " (of this, returns, by the log)", "memory");
+  for (const EvictionPolicy policy : kEvictionPolicies) std::printf(" %18s", std::string(policy_name(policy)).c_str());
+  std::printf(is_disk ? "\n" : " %12s\n", "clairvoyant");
+  for (const double share : kBudgets) {
+    const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(demand.bytes));
+    std::printf("  %6.0f %%", share * 100);
+    for (const EvictionPolicy policy : kEvictionPolicies) {
+      std::printf(" %9.2f", Run(options, image, {}, limited(tier, policy, bytes)).all(journal));
+      if (is_disk)
+        std::printf(" %8s", "");
+      else
+        std::printf(" (%6.3f)", try_policy(demand.log, policy, bytes).seconds);
+      std::fflush(stdout);
+    }
+    if (!is_disk) std::printf("     (%6.3f)", try_clairvoyant(demand.log, bytes).seconds);
+    std::printf("\n");
+  }
+}
+
+void print_curves(const BenchOptions& options, const Image& image, const Journal& journal) {
   ResidencyOptions logging;
   logging.logs_accesses = true;
   Run free_run(options, image, {}, logging);
   const double free_seconds = free_run.all(journal);
-  const Resident resident = free_run.replayer().resident();
-  const std::uint64_t all_bytes = resident.ray_trees + resident.color_trees + resident.tunnels;
-  const AccessLog log = parse_access_log(free_run.replayer().residency().access_log(), "the replay's own log");
-  std::printf("\nthe journal %d times, there and back: %.2f s without a limit, %.0f MB in pieces\n", kRounds,
-              free_seconds, static_cast<double>(all_bytes) * 1e-6);
-  std::printf("  seconds by memory for pieces and by policy (beside it: of this, returns, by the log)\n  %8s",
-              "memory");
-  for (const EvictionPolicy policy : kEvictionPolicies) std::printf(" %18s", std::string(policy_name(policy)).c_str());
-  std::printf(" %12s\n", "clairvoyant");
-  for (const double share : kBudgets) {
-    const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(all_bytes));
-    const auto logged = static_cast<std::uint64_t>(share * static_cast<double>(log.total_bytes()));
-    std::printf("  %6.0f %%", share * 100);
-    for (const EvictionPolicy policy : kEvictionPolicies) {
-      const double seconds = Run(options, image, {}, limited(policy, bytes)).all(journal);
-      std::printf(" %9.2f (%6.3f)", seconds, try_policy(log, policy, logged).seconds);
-    }
-    std::printf("     (%6.3f)\n", try_clairvoyant(log, logged).seconds);
-  }
+  const Demand demand{free_run.most_bytes(),
+                      parse_access_log(free_run.replayer().residency().access_log(), "the replay's own log")};
+  std::printf("\nthe journal %d times, there and back: %.2f s without a limit, at most %.0f MB in pieces\n", kRounds,
+              free_seconds, static_cast<double>(demand.bytes) * 1e-6);
+  for (const Tier tier : {Tier::disk, Tier::rebuilt}) print_curve(options, image, journal, tier, demand);
 }
 
 }  // namespace
@@ -109,7 +133,7 @@ void print_budgets(const BenchOptions& options) {
   std::printf("relook_bench budget: %s at %ux%u, %u sample(s), %zu thread(s); full render %.2f s\n",
               options.scene.c_str(), options.width, options.height, options.view.samples, thread_count(), full_seconds);
   print_shares(options, image, journal, full_seconds);
-  print_curve(options, image, journal);
+  print_curves(options, image, journal);
 }
 
 }  // namespace relook
