@@ -104,6 +104,23 @@ TEST_F(Fault, sigterm_leaves_finished_frames_a_report_and_no_temporary_files) {
   EXPECT_EQ(report["steps"].size(), files_below(at("run/frames")).size());
 }
 
+TEST_F(Fault, a_run_short_of_memory_is_taken_up_with_more) {
+  make_cache("160x90");
+  write_journal(3);
+  const ProgramResult refused = relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--memory", "1M"});
+  EXPECT_EQ(refused.exit_code, 4) << refused.output;
+  EXPECT_NE(refused.output.find("needs at least"), std::string::npos) << refused.output;
+  const auto report = [&] { return parse_json(text_of(read_file(at("run/report.json"))), "report.json"); };
+  EXPECT_EQ(report()["interrupted"], true);
+  EXPECT_EQ(report()["steps"].size(), 1U);
+  const ProgramResult taken_up = relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--memory", "4G"});
+  EXPECT_EQ(taken_up.exit_code, 0) << taken_up.output;
+  EXPECT_EQ(report()["interrupted"], false);
+  EXPECT_EQ(report()["resumed"]["frames"], 1);
+  EXPECT_EQ(report()["steps"].size(), 4U);
+  expect_whole_frames(at("run"));
+}
+
 TEST_F(Fault, sigterm_during_preprocess_leaves_nothing) {
   const pid_t child =
       start({"preprocess", kScene, "-o", at("big"), "--resolution", "1920x1080", "--samples", "16", "--quiet"});
