@@ -39,8 +39,8 @@ class JournalRun {
     const TraceScope span = console_.span("colour trees of --params");
     replayer_.choose_parameters(sets);
   }
-  /// `place`: of this run among `runs`, from 0. Writes the report at the end of the run, or when a signal ends it; an
-  /// error leaves none. Returns the number of pixels that --verify found different.
+  /// `place`: of this run among `runs`, from 0. Writes the report at the end of the run, or when a signal or want of
+  /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different.
   std::uint64_t run(std::size_t place, std::size_t runs);
   [[nodiscard]] const RunReport& report() const { return report_; }
   /// After run().

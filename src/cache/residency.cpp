@@ -138,7 +138,7 @@ void Residency::note_use_of_other(std::string_view kind, std::size_t number, std
   if (!options_.logs_accesses) return;
   const std::lock_guard lock(mutex_);
   PieceFacts facts;
-  facts.bytes = bytes;
+  facts.bytes = std::max<std::uint64_t>(bytes, 1);
   log_use(kind, number, facts, seconds);
 }
 

@@ -152,6 +152,7 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   result.touched.resize(kept.tiles.size());
   Room room(compressed_.most_samples());
   Pool<TileTools> tools;
+  for (std::size_t i = 0; i < std::min(kTilesAhead, tiles.size()); ++i) expect(kept, tiles[i]);
   parallel_for(tiles.size(), [&](std::size_t i) {
     if (i + kTilesAhead < tiles.size()) expect(kept, tiles[i + kTilesAhead]);
     CompressedTile& tile = kept.tiles[tiles[i]];

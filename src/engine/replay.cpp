@@ -127,6 +127,7 @@ struct Replayer::Impl {
     Pool<TileTools> tools;
     std::vector<TileUpdate> updates = updates_to_do(works);
     const std::vector<std::size_t> order = by_work(updates, works);
+    for (std::size_t i = 0; i < std::min(kTilesAhead, order.size()); ++i) expect(updates[order[i]].tile);
     parallel_for(order.size(), [&](std::size_t i) {
       if (i + kTilesAhead < order.size()) expect(updates[order[i + kTilesAhead]].tile);
       TileUpdate& update = updates[order[i]];

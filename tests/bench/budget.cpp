@@ -1,11 +1,13 @@
 #include "budget.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
 
 #include "base/parallel.h"
 #include "cache/access_log.h"
+#include "edit/apply.h"
 #include "engine/render.h"
 
 namespace relook {
@@ -27,17 +29,10 @@ class Run {
     most_bytes_ = std::max(most_bytes_, resident.ray_trees + resident.color_trees + resident.tunnels);
     return seconds;
   }
-  /// Rounds of all edits, and then all of them taken back.
-  double all(const Journal& journal) {
+  /// One after the other.
+  double all(const std::vector<Edit>& edits, const Journal& journal) {
     double seconds = 0;
-    for (int round = 0; round < kRounds; ++round) {
-      std::vector<Edit> back;
-      for (const JournalStep& one : journal.steps) {
-        back.push_back(inverse_of(whole_edit(one), replayer_.state().document().look));
-        seconds += step(whole_edit(one), journal);
-      }
-      for (; !back.empty(); back.pop_back()) seconds += step(back.back(), journal);
-    }
+    for (const Edit& edit : edits) seconds += step(edit, journal);
     return seconds;
   }
   [[nodiscard]] const Replayer& replayer() const { return replayer_; }
@@ -48,6 +43,23 @@ class Run {
   Replayer replayer_;
   std::uint64_t most_bytes_ = 0;
 };
+
+/// Rounds of all edits of a journal, and then all of them taken back.
+std::vector<Edit> there_and_back(const BenchOptions& options, const Journal& journal) {
+  SceneState state = load_scene(options);
+  std::vector<Edit> there, back;
+  for (const JournalStep& step : journal.steps) {
+    there.push_back(whole_edit(step));
+    back.push_back(inverse_of(there.back(), state.document().look));
+    apply_edit(state, there.back(), journal.file, journal.path.parent_path());
+  }
+  std::vector<Edit> all;
+  for (int round = 0; round < kRounds; ++round) {
+    all.insert(all.end(), there.begin(), there.end());
+    all.insert(all.end(), back.rbegin(), back.rend());
+  }
+  return all;
+}
 
 void print_shares(const BenchOptions& options, const Image& image, const Journal& journal, double full_seconds) {
   std::printf("\nfull render / edit, first time, by share of ray trees kept (Table 3's columns)\n");
@@ -85,8 +97,8 @@ struct Demand {
   AccessLog log;
 };
 
-void print_curve(const BenchOptions& options, const Image& image, const Journal& journal, Tier tier,
-                 const Demand& demand) {
+void print_curve(const BenchOptions& options, const Image& image, const Journal& journal,
+                 const std::vector<Edit>& edits, Tier tier, const Demand& demand) {
   const bool is_disk = tier == Tier::disk;
   std::printf("\n  what has left is %s: seconds by memory for pieces and by policy%s\n  %8s",
               is_disk ? "read back" : "worked out again", is_disk ? "" : " (of this, returns, by the log)", "memory");
@@ -96,7 +108,7 @@ void print_curve(const BenchOptions& options, const Image& image, const Journal&
     const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(demand.bytes));
     std::printf("  %6.0f %%", share * 100);
     for (const EvictionPolicy policy : kEvictionPolicies) {
-      std::printf(" %9.2f", Run(options, image, {}, limited(tier, policy, bytes)).all(journal));
+      std::printf(" %9.2f", Run(options, image, {}, limited(tier, policy, bytes)).all(edits, journal));
       if (is_disk)
         std::printf(" %8s", "");
       else
@@ -112,12 +124,13 @@ void print_curves(const BenchOptions& options, const Image& image, const Journal
   ResidencyOptions logging;
   logging.logs_accesses = true;
   Run free_run(options, image, {}, logging);
-  const double free_seconds = free_run.all(journal);
+  const std::vector<Edit> edits = there_and_back(options, journal);
+  const double free_seconds = free_run.all(edits, journal);
   const Demand demand{free_run.most_bytes(),
                       parse_access_log(free_run.replayer().residency().access_log(), "the replay's own log")};
   std::printf("\nthe journal %d times, there and back: %.2f s without a limit, at most %.0f MB in pieces\n", kRounds,
               free_seconds, static_cast<double>(demand.bytes) * 1e-6);
-  for (const Tier tier : {Tier::disk, Tier::rebuilt}) print_curve(options, image, journal, tier, demand);
+  for (const Tier tier : {Tier::disk, Tier::rebuilt}) print_curve(options, image, journal, edits, tier, demand);
 }
 
 }  // namespace
