@@ -10,7 +10,9 @@ namespace relook {
 
 BenchOptions parse_options(int count, char** arguments) {
   if (count < 3)
-    throw UsageError("relook_bench SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]] or relook_bench growth SCENE JOURNAL");
+    throw UsageError(
+        "relook_bench [growth|budget] SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]], relook_bench all ..., or relook_bench "
+        "peaks CACHE JOURNAL");
   BenchOptions options;
   options.scene = arguments[1];
   options.journal = arguments[2];
