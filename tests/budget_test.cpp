@@ -123,8 +123,8 @@ TEST(MissingRayTrees, come_back_once_they_are_used) {
   EXPECT_EQ(replayer.resident().ray_trees, 0U);
   std::vector<std::uint64_t> rays;
   for (const int intensity : {4, 5, 6, 7})
-    rays.push_back(replayer.step(replace_edit("/lights/" + light + "/intensity", intensity), "test", ".")
-                       .counters.object_rays);
+    rays.push_back(
+        replayer.step(replace_edit("/lights/" + light + "/intensity", intensity), "test", ".").counters.object_rays);
   EXPECT_GT(rays.front(), 0U);
   EXPECT_EQ(rays.back(), 0U);
   EXPECT_GT(replayer.resident().ray_trees, 0U);

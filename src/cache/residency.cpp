@@ -58,8 +58,8 @@ void Residency::free_copy(Piece& piece) {
   piece.copy.reset();
 }
 
-void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes,
-                    std::optional<double> rebuild_seconds, double surface_area) {
+void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::optional<double> rebuild_seconds,
+                    double surface_area) {
   if (!is_watched()) return;
   const std::lock_guard lock(mutex_);
   Piece& p = piece(kind, tile);

@@ -97,8 +97,9 @@ class Residency {
   /// The piece will be used soon: if it is on disk, the system begins to fetch it. Nothing else changes.
   void expect(PieceKind kind, std::size_t tile);
   /// Is a missing piece worth being worked out again and kept? Where room is short, only if its last use before this
-  /// change gives it more weight than what would have to leave: of pieces that are used in turn and do not fit together,
-  /// some stay instead of each making the next one leave. `bytes`: about; if it was there before, that counts.
+  /// change gives it more weight than what would have to leave: of pieces that are used in turn and do not fit
+  /// together, some stay instead of each making the next one leave. `bytes`: about; if it was there before, that
+  /// counts.
   [[nodiscard]] bool is_worth_room(PieceKind kind, std::size_t tile, std::uint64_t bytes);
   /// Drops a piece that may be missing, with its copy.
   void forget(PieceKind kind, std::size_t tile);

@@ -36,8 +36,8 @@ class ImageRegions {
   [[nodiscard]] bool has_groups() const { return !groups_.empty(); }
   [[nodiscard]] bool has_tunnels() const { return !tunnels_.empty(); }
 
-  /// After the trees of some leaves of a tile have changed: its groups and, if tunnels have been built, its tunnels, all
-  /// of them if they are missing. Tiles may be updated at the same time; update_image() with all of them follows.
+  /// After the trees of some leaves of a tile have changed: its groups and, if tunnels have been built, its tunnels,
+  /// all of them if they are missing. Tiles may be updated at the same time; update_image() with all of them follows.
   void update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
               const ClassOf& class_of);
 

@@ -43,9 +43,10 @@ struct Replayer::Impl {
         stored(std::move(i), state.scene().light_order, atoms(options.atoms), options, residency),
         compressed(image().trees.size(),
                    static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {
-    residency.set_others(
-        [this] { return compressed.bytes(); },
-        [this](std::vector<Victim>& victims) { compressed.list_victims(residency.policy(), residency.change(), victims); });
+    residency.set_others([this] { return compressed.bytes(); },
+                         [this](std::vector<Victim>& victims) {
+                           compressed.list_victims(residency.policy(), residency.change(), victims);
+                         });
     stored.forget_hits(options.ray_trees);
   }
 

@@ -89,8 +89,8 @@ GrowCounters StoredImage::bring_back_hits(std::size_t tile, const Leaves& leaves
   TileTrees& trees = image_.trees[tile];
   GrowCounters counters;
   if (has_hits(trees) || stays_without_hits_[tile] != 0) return counters;
-  const bool are_valid = std::ranges::none_of(
-      trees.paths, [&](PathId path) { return (tasks.of_path[path.index()] & kUpdateTree) != 0; });
+  const bool are_valid =
+      std::ranges::none_of(trees.paths, [&](PathId path) { return (tasks.of_path[path.index()] & kUpdateTree) != 0; });
   if (!are_valid) return counters;
   const std::size_t samples = trees.paths.size();
   const auto wanted = leaves.count() * kLeafSize * kLeafSize * image_.view.samples;
@@ -214,8 +214,7 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
 void StoredImage::bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene) {
   parallel_for(updates.size(), [&](std::size_t k) {
     const TileUpdate& update = updates[k];
-    if (update.missed_tunnels && update.packed.empty() &&
-        residency_.is_worth_room(PieceKind::tunnels, update.tile, 0))
+    if (update.missed_tunnels && update.packed.empty() && residency_.is_worth_room(PieceKind::tunnels, update.tile, 0))
       regions_.update(image_, scene, update.tile, {}, class_of());
   });
 }

@@ -97,8 +97,8 @@ class StoredImage {
   std::vector<ObjectId> atoms_;
   ImageRegions regions_;
   std::vector<std::uint64_t> tile_segments_;
-  std::vector<std::uint8_t> stays_without_hits_;  // by tile
-  std::vector<std::uint32_t> found_again_;        // by tile: samples, since its hits have been missing
+  std::vector<std::uint8_t> stays_without_hits_;   // by tile
+  std::vector<std::uint32_t> found_again_;         // by tile: samples, since its hits have been missing
   std::atomic<double> hit_seconds_ = kHitSeconds;  // measured as hits are found again
   std::uint64_t segments_ = 0, samples_ = 0;
   std::size_t compact_paths_;  // size of the path table when it last held no unused paths
