@@ -43,6 +43,8 @@ void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--progress", raw.progress, "auto, plain, json, openjd or none")
       ->type_name("{auto,plain,json,openjd,none}");
   verb.add_flag("--log-json", arguments.log_json, "Warnings, errors and progress on stderr as one JSON object a line");
+  verb.add_flag("--overwrite", arguments.overwrite,
+                "Replace another run or cache, or another file, that is where the output goes; never an input");
   verb.add_option("--trace", arguments.trace, "File to write: what took how long, for Perfetto (Chrome trace events)");
 }
 

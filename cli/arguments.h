@@ -49,6 +49,7 @@ struct Arguments {
   bool overlays = false;  // images of the regions found
   ProgressStyle progress = ProgressStyle::automatic;
   bool log_json = false;
+  bool overwrite = false;  // replace another run or cache, or a single foreign file, that is in the way
   std::string trace;  // file, or ""
 
   std::string journal;                // render

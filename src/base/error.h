@@ -18,6 +18,7 @@ enum class ExitCode {
   damaged_cache = 5,
   io = 6,
   difference = 10,
+  busy = 75,  // somebody else holds a lock: try again later (sysexits.h, EX_TEMPFAIL)
 };
 
 /// Every error a user can cause or meet. what() is "FILE: WHERE: WHAT" (empty parts left out), control bytes stripped.
@@ -37,9 +38,15 @@ struct InputError : Error {
 };
 struct UsageError : Error {
   explicit UsageError(std::string_view what) : Error(ExitCode::usage, "", "", what) {}
+  /// Something is where an output is to go, or is an input itself.
+  UsageError(std::string_view file, std::string_view what) : Error(ExitCode::usage, file, "", what) {}
 };
 struct IoError : Error {
   IoError(std::string_view file, std::string_view what) : Error(ExitCode::io, file, "", what) {}
+};
+/// Another process is writing here.
+struct BusyError : Error {
+  BusyError(std::string_view file, std::string_view what) : Error(ExitCode::busy, file, "", what) {}
 };
 /// Disk full, or memory short.
 struct ResourceError : Error {

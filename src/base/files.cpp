@@ -157,14 +157,43 @@ void append_synced(int descriptor, BytesView bytes, const std::filesystem::path&
   if (::fsync(descriptor) != 0) fail_to_write(path, "write to disk", errno);
 }
 
+struct FileWriter::Temporary {
+  explicit Temporary(const std::filesystem::path& path) : name(path), file(name.descriptor()) {}
+  TemporaryFile name;
+  Descriptor file;
+};
+
+FileWriter::FileWriter(std::filesystem::path path)
+    : path_(std::move(path)), temporary_(std::make_unique<Temporary>(path_)) {}
+FileWriter::~FileWriter() = default;
+
+void FileWriter::append(BytesView bytes) {
+  constexpr std::size_t kMostWaiting = std::size_t{1} << 18;
+  written_bytes_ += bytes.size();
+  if (waiting_.size() + bytes.size() > kMostWaiting) write_out();
+  if (bytes.size() > kMostWaiting)
+    write_all(temporary_->file.number(), bytes, path_);
+  else
+    waiting_.insert(waiting_.end(), bytes.begin(), bytes.end());
+}
+
+void FileWriter::write_out() {
+  write_all(temporary_->file.number(), waiting_, path_);
+  waiting_.clear();
+}
+
+void FileWriter::publish() {
+  write_out();
+  if (::fsync(temporary_->file.number()) != 0) fail_to_write(path_, "write to disk", errno);
+  if (!temporary_->file.close()) fail_to_write(path_, "close", errno);
+  temporary_->name.publish(path_);
+  sync_folder(folder_of(path_));
+}
+
 void write_file(const std::filesystem::path& path, BytesView bytes) {
-  TemporaryFile temporary(path);
-  Descriptor file(temporary.descriptor());
-  write_all(file.number(), bytes, path);
-  if (::fsync(file.number()) != 0) fail_to_write(path, "write to disk", errno);
-  if (!file.close()) fail_to_write(path, "close", errno);
-  temporary.publish(path);
-  sync_folder(folder_of(path));
+  FileWriter file(path);
+  file.append(bytes);
+  file.publish();
 }
 
 void sync_folder(const std::filesystem::path& folder) {

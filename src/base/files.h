@@ -2,7 +2,9 @@
 // synced, or not at all.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +38,28 @@ inline constexpr std::size_t kLargestInputBytes = std::size_t{8} << 30;
 /// the temporary is gone, `path` is as before, and IoError or ResourceError (disk full) is thrown.
 void write_file(const std::filesystem::path& path, BytesView bytes);
 inline void write_file(const std::filesystem::path& path, std::string_view text) { write_file(path, bytes_of(text)); }
+
+/// The same for a file that is not in memory as a whole: written piece by piece, there once publish() has returned.
+class FileWriter {
+ public:
+  explicit FileWriter(std::filesystem::path path);
+  ~FileWriter();
+  FileWriter(const FileWriter&) = delete;
+  FileWriter& operator=(const FileWriter&) = delete;
+  void append(BytesView bytes);
+  void append(std::string_view text) { append(bytes_of(text)); }
+  [[nodiscard]] std::uint64_t size() const { return written_bytes_; }
+  void publish();
+
+ private:
+  struct Temporary;
+  void write_out();
+
+  std::filesystem::path path_;
+  std::unique_ptr<Temporary> temporary_;
+  Bytes waiting_;  // not yet handed to the system
+  std::uint64_t written_bytes_ = 0;
+};
 
 /// Throws ResourceError for a lack of space or memory, else IoError: "PATH: cannot ACTION: reason of `error`".
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, std::string_view action, int error);
