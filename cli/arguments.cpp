@@ -28,6 +28,7 @@ void add_footers(CLI::App& app, const std::string& verb) {
 
 /// Options that need our own syntax, as text until the whole line is read.
 struct RawTexts {
+  std::string report = "html";
   std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
   std::string json;  // compare, plan; "-": to stdout
   std::optional<std::string> steps;
@@ -175,7 +176,9 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_flag("--strict", arguments.strict,
                   "Refuse a cache with any damage, instead of tracing again what is damaged or missing");
   replay.add_option("--steps", raw.steps, "Frames of these steps only, like 3, 2-5 or 4-, after the edits before them");
-  replay.add_flag("--fresh", arguments.fresh, "Do every step, instead of resuming a run that ended early");
+  replay.add_flag("--fresh", arguments.fresh, "Do every frame asked for, also those that are there already");
+  replay.add_option("--report", raw.report, "What to write beside the frames: html (and json), json, or none")
+      ->check(CLI::IsMember({"none", "json", "html"}));
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
   add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
   add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");
@@ -218,6 +221,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
 
   CLI::App& blame = *app.add_subcommand("blame", "Say which steps of a run changed a pixel, and through what");
   add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);
+  blame.add_option("--cache", arguments.cache, "Where the run's cache is now");
+  blame.add_option("--journal", arguments.journal, "Where the run's journal is now");
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 
   CLI::App& completions = *app.add_subcommand("completions", "Print completions for a shell");
@@ -252,6 +257,9 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.color_trees.empty())
     arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
   if (raw.steps) arguments.steps = parse_steps("--steps", *raw.steps);
+  arguments.report = raw.report == "none"   ? ReportKind::none
+                     : raw.report == "json" ? ReportKind::json
+                                            : ReportKind::html;
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
   arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();

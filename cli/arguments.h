@@ -27,6 +27,8 @@ enum class Verb : std::uint8_t {
   completions
 };
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };
+/// What a replay writes beside frames.
+enum class ReportKind : std::uint8_t { none, json, html };
 enum class JournalSource : std::uint8_t { diff, variants, animation, wedge };
 
 struct ViewArguments {
@@ -50,21 +52,23 @@ struct Arguments {
   ProgressStyle progress = ProgressStyle::automatic;
   bool log_json = false;
   bool overwrite = false;  // replace another run or cache, or a single foreign file, that is in the way
-  std::string trace;  // file, or ""
+  std::string trace;       // file, or ""
 
   std::string journal;                // render
   std::optional<std::uint32_t> step;  // render
   bool float_frames = false;          // render, replay
   bool layers = false;                // render, replay: --aovs
   std::optional<double> verify_percent;
-  bool baseline = false;           // replay
-  bool strict = false;             // replay: no cache with damage, even such as can be made good
-  std::optional<StepRange> steps;  // replay
-  bool fresh = false;              // replay: no frame of an earlier run is kept
-  std::string spill;               // replay: folder of the spill file; "": the run's
-  std::string access_log;          // replay: file, or ""
-  bool print_look = false;         // inspect
-  std::string scene;               // inspect, replay, check
+  bool baseline = false;                 // replay
+  bool strict = false;                   // replay: no cache with damage, even such as can be made good
+  std::optional<StepRange> steps;        // replay
+  bool fresh = false;                    // replay: no frame of an earlier run is kept
+  ReportKind report = ReportKind::html;  // replay
+  std::string cache;                     // blame: folder, or "": where the run says; the same for `journal`
+  std::string spill;                     // replay: folder of the spill file; "": the run's
+  std::string access_log;                // replay: file, or ""
+  bool print_look = false;               // inspect
+  std::string scene;                     // inspect, replay, check
 
   Thresholds thresholds;                               // compare
   bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP

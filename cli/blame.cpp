@@ -7,6 +7,10 @@
 #include "engine/cached_image.h"
 #include "engine/pixel_history.h"
 #include "load_cache.h"
+#include "report/edit_hashes.h"
+#include "report/places.h"
+#include "report/report_file.h"
+#include "report/run_ledger.h"
 #include "values.h"
 #include "verbs.h"
 
@@ -21,8 +25,42 @@ struct RunSource {
   std::string cache;
 };
 
-RunSource read_run(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / "report.json";
+/// A file or folder of the run: where the command line says, as the report names it, or where it was relative to the
+/// run, and absolute. Throws InputError that names the option.
+std::string find_part(const JsonView& report, const std::string& run, const std::string& given, const char* part,
+                      const JsonView& name) {
+  if (!given.empty()) return given;
+  const std::optional<std::filesystem::path> place =
+      find_place(run, report.value().value("places", Json::object()).value(part, Json()));
+  if (place) return place->string();
+  const std::string named = name.text();
+  std::error_code error;
+  if (std::filesystem::exists(named, error)) return named;
+  throw InputError(run, "", "its " + std::string(part) + " \"" + printable(named) + "\" is not found; say --" + part);
+}
+
+/// Throws InputError unless the journal leads to the frames of the run.
+void require_journal_of_run(const RunSource& source, const JsonView& steps, const std::string& run) {
+  const EditHashes hashes(source.journal);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const JsonView entry = steps.at(i);
+    const auto step = static_cast<std::uint32_t>(entry.at("step").integer(0, kWholeStep));
+    const bool is_known = step <= source.journal.steps.size();
+    const auto number = ledger_key(entry.value()).second;
+    const bool has_frame =
+        is_known && step > 0 && number != kWholeStep && number <= frames_of(source.journal.steps[step - 1]).size();
+    const std::string edits = entry.at("edits").text();
+    const bool is_same = is_known && (has_frame ? hashes.at(step, number - 1) == edits
+                                                : number == kWholeStep && hashes.after(step) == edits);
+    if (!is_same)
+      throw InputError(source.journal.file, "",
+                       "is not as it was when " + run + " was made: step " + std::to_string(step) + " is another");
+  }
+}
+
+RunSource read_run(const Arguments& arguments) {
+  const std::string& run = arguments.inputs[0];
+  const std::filesystem::path path = std::filesystem::path(run) / kReportName;
   const std::string file = path.string();
   const Bytes bytes = read_file(path);
   const Json report = parse_json(text_of(bytes), file);
@@ -30,12 +68,11 @@ RunSource read_run(const std::filesystem::path& run) {
   if (view.at("relook").text() != "report/1") view.at("relook").fail("not a report that this program reads");
   RunSource source;
   source.scene_hash = view.at("scene").at("hash").text();
-  source.cache = view.at("cache").text();
-  source.journal = read_journal(view.at("journal").at("file").text());
-  if (source.journal.hash != view.at("journal").at("hash").text())
-    throw InputError(source.journal.file, "", "is not as it was when " + run.string() + " was made");
+  source.cache = find_part(view, run, arguments.cache, "cache", view.at("cache"));
+  source.journal = read_journal(find_part(view, run, arguments.journal, "journal", view.at("journal").at("file")));
   const JsonView steps = view.at("steps");
   steps.require_array();
+  require_journal_of_run(source, steps, run);
   if (steps.size() > 0)
     source.steps = static_cast<std::size_t>(
         steps.at(steps.size() - 1).at("step").integer(0, static_cast<std::int64_t>(source.journal.steps.size())));
@@ -80,25 +117,22 @@ class Blame {
   void run(const Journal& journal, std::size_t steps) {
     for (std::size_t i = 0; i < steps; ++i) {
       const JournalStep& step = journal.steps[i];
-      const bool has_frames = !step.drag.empty() || !step.wedge.empty();
-      std::uint32_t number = 0;
+      std::size_t number = 0;
       for (const Edit& edit : frames_of(step)) {
         console_.check_interrupt();
-        ++number;
+        const FramePlace place = place_of(step, static_cast<std::uint32_t>(i + 1), number++);
         const PixelStep result = pixel_.step(edit, journal.file, journal.path.parent_path());
-        if (result.is_changed)
-          note(static_cast<std::uint32_t>(i + 1), has_frames ? std::optional(number) : std::nullopt, step, result);
+        if (result.is_changed) note(place, step, result);
       }
     }
   }
   [[nodiscard]] Json found() { return std::move(found_); }
 
  private:
-  void note(std::uint32_t number, std::optional<std::uint32_t> frame, const JournalStep& step,
-            const PixelStep& result) {
+  void note(const FramePlace& place, const JournalStep& step, const PixelStep& result) {
     const std::string change(change_class_name(result.classification.change));
-    console_.line(step_label(number, frame) + " " + change + " \"" + printable(step.name) +
-                  "\": " + text(result.before) + " -> " + text(result.after));
+    console_.line(step_label(place) + " " + change + " \"" + printable(step.name) + "\": " + text(result.before) +
+                  " -> " + text(result.after));
     Json causes = Json::array();
     for (const std::string& cause : result.causes) {
       causes.push_back(printable(cause));
@@ -106,10 +140,10 @@ class Blame {
     }
     if (pixel_.paths() != paths_) print_paths(pixel_.paths(), console_);
     paths_ = pixel_.paths();
-    Json entry{{"step", number},
+    Json entry{{"step", place.step},
                {"name", step.name},
                {"class", change},
-               {"frame", frame_name(number, frame)},
+               {"frame", frame_name(place)},
                {"before", color_json(result.before)},
                {"after", color_json(result.after)},
                {"causes", causes},
@@ -127,7 +161,7 @@ class Blame {
 
 ExitCode run_blame(const Arguments& arguments, Console& console) {
   const auto [x, y] = parse_pixel("PIXEL", arguments.inputs[1]);
-  const RunSource source = read_run(arguments.inputs[0]);
+  const RunSource source = read_run(arguments);
   const std::unique_ptr<PixelHistory> pixel = open_pixel(source, x, y);
   const Rgba color = pixel->color();
   const std::vector<std::string> paths = pixel->paths();

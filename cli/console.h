@@ -33,6 +33,7 @@ class Console {
 
   /// A line of a result; nothing with --quiet or --json.
   void line(std::string_view text) const;
+  void log_line(std::string_view text) { line(text); }
   /// The result as JSON; nothing without --json.
   void json(const Json& result) const;
   void warn(const std::vector<std::string>& warnings);

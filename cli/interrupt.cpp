@@ -2,20 +2,19 @@
 
 #include <pthread.h>
 #include <signal.h>
-#include <unistd.h>
 
 #include <initializer_list>
 
 namespace relook {
 namespace {
 
-constexpr int kStopWaiting = SIGUSR1;  // sent by the destructor, to the waiting thread only
-constexpr int kSignalExitBase = 128;   // the shell's convention for "ended by a signal"
+/// Sent by the destructor, to the waiting thread only.
+int stop_waiting() { return SIGRTMIN; }
 
 sigset_t watched_signals() {
   sigset_t set;
   sigemptyset(&set);
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP, kStopWaiting}) sigaddset(&set, signal);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGUSR1, SIGUSR2, SIGXCPU, stop_waiting()}) sigaddset(&set, signal);
   return set;
 }
 
@@ -25,16 +24,19 @@ Interrupt::Interrupt() {
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   signal(SIGPIPE, SIG_IGN);  // a closed stdout is a failed write, reported at the end, and leaves no temporary files
+  signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit is a failed write, too
+  let_loops_be_interrupted(&signal_);
   waiter_ = std::thread([this] { wait_for_signals(); });
 }
 
 Interrupt::~Interrupt() {
-  pthread_kill(waiter_.native_handle(), kStopWaiting);
+  let_loops_be_interrupted(nullptr);
+  pthread_kill(waiter_.native_handle(), stop_waiting());
   waiter_.join();
 }
 
 void Interrupt::check() const {
-  if (const int signal = signal_.load()) throw Interrupted{signal};
+  if (is_interrupted()) throw Interrupted{signal_.load()};
 }
 
 void Interrupt::wait_for_signals() {
@@ -42,9 +44,9 @@ void Interrupt::wait_for_signals() {
   for (;;) {
     int signal = 0;
     if (sigwait(&set, &signal) != 0) continue;
-    if (signal == kStopWaiting) return;
-    if (signal_.load() != 0) _exit(kSignalExitBase + signal);
-    signal_.store(signal);
+    if (signal == stop_waiting()) return;
+    int none = 0;
+    signal_.compare_exchange_strong(none, signal);
   }
 }
 

@@ -1,25 +1,23 @@
-// SIGTERM, SIGINT and SIGHUP as a question that long work asks now and then: a thread of its own waits for them, so
-// that no code runs in a signal handler and no state is global.
+// Signals that ask the program to end, as a question that long work asks now and then: TERM, INT, HUP, and USR1, USR2
+// and XCPU, by which schedulers give notice. A thread of its own waits for them, so that no code runs in a signal
+// handler. Once one has come, further ones change nothing.
 #pragma once
 #include <atomic>
 #include <thread>
 
-namespace relook {
+#include "base/parallel.h"
 
-/// Thrown by Interrupt::check(): unwinds to main, removing temporary files on the way.
-struct Interrupted {
-  int signal;
-};
+namespace relook {
 
 class Interrupt {
  public:
-  /// Create before any other thread: those inherit the signal mask.
+  /// Create before any other thread: those inherit the signal mask. Loops of the whole process are interrupted, too.
   Interrupt();
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// Throws Interrupted once a signal has come. A second signal ends the process at once.
+  /// Throws Interrupted once a signal has come: unwinds to main, removing temporary files on the way.
   void check() const;
 
  private:

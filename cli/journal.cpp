@@ -7,6 +7,7 @@
 #include "edit/apply.h"
 #include "edit/draft_diff.h"
 #include "load_scene.h"
+#include "outputs.h"
 #include "scene/animation.h"
 #include "verbs.h"
 
@@ -54,6 +55,7 @@ DiffDraft make_diff(const Arguments& arguments, const SceneState& before, Consol
   LoadedDocument loaded = load_document(arguments.inputs[1], arguments.view);
   const Camera camera = set_up_inspection(loaded, arguments.view);
   console.warn(loaded.warnings);
+  require_not_outputs(arguments, loaded.files, "a file of the scene");
   const SceneState after(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
   require_one_camera(arguments, before.scene().camera, camera);
   const std::filesystem::path journal(arguments.output);
@@ -106,6 +108,7 @@ ExitCode run_journal(const Arguments& arguments, Console& console) {
   LoadedDocument loaded = load_document(arguments.inputs[0], arguments.view);
   const Camera camera = set_up_inspection(loaded, arguments.view);
   console.warn(loaded.warnings);
+  require_not_outputs(arguments, loaded.files, "a file of the scene");
   SceneState state(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
   const auto [draft, files] = make_draft(arguments, state, console);
   console.warn(draft.warnings);

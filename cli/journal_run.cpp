@@ -1,10 +1,14 @@
 #include "journal_run.h"
 
+#include <cstdio>
+#include <new>
+#include <utility>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "engine/compare.h"
 #include "engine/render.h"
-#include "resume.h"
+#include "report/places.h"
 
 namespace relook {
 namespace {
@@ -13,26 +17,34 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// "3_01" of a frame, "3" of a drag or wedge as a whole.
+std::string label_of(const StepReport& entry) {
+  return entry.is_whole_step ? std::to_string(entry.place.step) : step_label(entry.place);
+}
+
+ChangeClass change_class_of(const std::string& name) {
+  for (const ChangeClass change : {ChangeClass::optical, ChangeClass::geometric, ChangeClass::mixed})
+    if (change_class_name(change) == name) return change;
+  return ChangeClass::color;
+}
+
+/// The files of the frame that an entry of an earlier command is of.
+void take_files(const Json& kept, StepReport& entry) {
+  for (const auto& [name, stamp] : kept.at("files").items())
+    entry.files[name] = {stamp.at("hash").get<std::string>(), stamp.at("bytes").get<std::uint64_t>(),
+                         stamp.at("modified").get<std::int64_t>()};
+}
+
 RegionOptions region_options(const StructureOptions& structures) {
   return {structures.groups, structures.tunnels, structures.ray_trees_percent / 100,
           structures.color_trees_percent / 100, structures.atoms};
-}
-
-/// Of steps first..last of a journal; 0 is the frame before any of them. A drag or wedge has one more than entries.
-std::size_t frame_count(const Journal& journal, std::size_t first, std::size_t last) {
-  std::size_t frames = first == 0 ? 1 : 0;
-  for (std::size_t step = std::max<std::size_t>(first, 1); step <= last; ++step) {
-    const JournalStep& entry = journal.steps[step - 1];
-    frames += 1 + entry.drag.size() + entry.wedge.size();
-  }
-  return frames;
 }
 
 /// The step and, one after the other, the phases that its report times.
 void trace_step(const StepReport& step, std::chrono::steady_clock::time_point start, TraceFile& trace) {
   const Seconds& seconds = step.seconds;
   const Counters& counters = step.counters;
-  trace.span(step_label(step.step, step.frame_in_step()) + " " + step.name, start, seconds.total,
+  trace.span(label_of(step) + " " + step.name, start, seconds.total,
              {{"class", change_class_name(step.change)},
               {"pixels_changed", counters.pixels_changed},
               {"samples_affected", counters.samples_affected},
@@ -57,15 +69,16 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
 
 }  // namespace
 
-JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, OpenedCache opened,
-                       std::unique_ptr<Residency> residency, const CacheFacts& cache,
-                       const std::shared_ptr<const DisplayView>& view, const std::filesystem::path& folder)
+JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan,
+                       OpenedCache opened, std::unique_ptr<Residency> residency, const CacheFacts& cache,
+                       const std::shared_ptr<const DisplayView>& view)
     : arguments_(arguments),
       console_(console),
       journal_(journal),
-      folder_(folder, opened.image.frame.width, opened.image.frame.height,
-              arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view,
-              run_hash(arguments, journal, view.get()), arguments.fresh),
+      plan_(plan),
+      folder_(plan, journal,
+              {opened.image.frame.width, opened.image.frame.height,
+               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view, arguments.report}),
       replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
                 std::move(residency)) {
   report_.scene = replayer_.state().document().file;
@@ -73,6 +86,9 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.cache_folder = arguments.inputs[0];
   report_.journal = journal.file;
   report_.journal_hash = journal.hash;
+  report_.source = plan.source();
+  report_.places = {{"cache", place_json(plan.folder(), arguments.inputs[0])},
+                    {"journal", place_json(plan.folder(), journal.path)}};
   report_.camera = replayer_.state().scene().camera;
   report_.view = replayer_.image().view;
   report_.structures = arguments.structures;
@@ -80,9 +96,6 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.layers = arguments.layers;
   report_.verify_percent = arguments.verify_percent;
   report_.step_range = arguments.steps;
-  first_step_ = arguments.steps ? arguments.steps->first : 0;
-  last_step_ = arguments.steps ? arguments.steps->last.value_or(journal.steps.size()) : journal.steps.size();
-  frames_ = frame_count(journal, first_step_, last_step_);
   report_.threads = thread_count();
   report_.cache = cache.sizes;
   report_.cache_damage = cache.damage;
@@ -94,149 +107,192 @@ std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
   runs_ = static_cast<double>(runs);
   try {
     run_steps();
+    folder_.write_report(report_, false, [this] { console_.check_interrupt(); });
   } catch (const Interrupted&) {
     leave_off();
     throw;
   }
-  folder_.write_report(report_, journal_);
   if (!arguments_.access_log.empty()) write_file(arguments_.access_log, replayer_.residency().access_log());
-  return pixels_different_;
+  print_summary();
+  return pixels_different_ + plan_.pixels_different();
 }
 
-/// Between frames: reports those that are finished. The same command takes the run up again.
+/// Reports the frames that are finished. The same command takes the run up again.
 void JournalRun::leave_off() {
-  report_.interrupted = true;
-  folder_.write_report(report_, journal_);
+  const Uninterrupted to_the_end;
+  folder_.write_report(report_, true, [] {});
 }
 
 void JournalRun::run_steps() {
-  if (!folder_.kept().empty())
-    resume();
-  else if (first_step_ == 0)
-    base_step();
-  else
-    start_late();
-  while (steps_done_ < last_step_) journal_step(journal_.steps[steps_done_]);
+  for (std::uint32_t step = 1; step < plan_.first_step(); ++step)
+    for (const Edit& edit : edits_of(step)) pending_.push_back(&edit), ++frame_number_;
+  if (plan_.first_step() > 0) ++frame_number_;
+  if (arguments_.baseline && !arguments_.verify_percent) full_render();
+  for (std::uint32_t step = plan_.first_step(); step <= plan_.last_step(); ++step) run_step(step);
   console_.part_done();
 }
 
-/// Goes to where the scene is after the first `steps` steps.
-void JournalRun::apply_to(std::size_t steps) {
+std::span<const Edit> JournalRun::edits_of(std::uint32_t step) const {
+  return step == 0 ? std::span<const Edit>() : frames_of(journal_.steps[step - 1]);
+}
+
+void JournalRun::run_step(std::uint32_t step) {
+  for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame, ++frames_done_, ++frame_number_) {
+    if (plan_.keeps(step, frame))
+      pass_kept(step, frame);
+    else
+      run_frame(step, frame);
+  }
+  if (step_so_far_ || (step > 0 && new_entry(step, 0).place.number && !plan_.keeps_whole_step(step)))
+    end_numbered(step);
+}
+
+StepReport JournalRun::new_entry(std::uint32_t step, std::size_t frame) const {
+  StepReport entry;
+  entry.edits_hash = plan_.hashes().at(step, frame);
+  entry.verify_percent = arguments_.verify_percent;
+  if (step == 0) {
+    entry.name = "base";
+    return entry;
+  }
+  const JournalStep& written = journal_.steps[step - 1];
+  entry.place = place_of(written, step, frame);
+  entry.is_drag = !written.drag.empty();
+  entry.name = written.name;
+  return entry;
+}
+
+/// A frame that is there already: its edit is made with the next ones, or at once while a selection is being dragged.
+void JournalRun::pass_kept(std::uint32_t step, std::size_t frame) {
+  const StepReport entry = new_entry(step, frame);
+  console_.log_line(label_of(entry) + " \"" + printable(entry.name) + "\": kept");
+  if (step == 0) return;
+  const Edit& edit = edits_of(step)[frame];
+  follows_last_ = false;
+  if (is_dragging_)
+    (void)replayer_.drag(edit, journal_.file, journal_.path.parent_path());
+  else
+    pending_.push_back(&edit);
+}
+
+/// Goes to where the scene is before the next frame.
+void JournalRun::catch_up() {
+  if (pending_.empty()) return;
+  const auto start = std::chrono::steady_clock::now();
   const TraceScope span = console_.span("edits before");
-  steps_done_ = steps;
-  for (const Edit& edit : edits_to(journal_, steps)) {
+  for (const Edit& edit : merged(std::exchange(pending_, {}))) {
     console_.check_interrupt();
     (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
   }
+  follows_last_ = false;
+  report_.resume_seconds += seconds_since(start);
 }
 
-/// Without a frame of what lies before the first step asked for.
-void JournalRun::start_late() {
-  apply_to(first_step_ - 1);
-  if (arguments_.baseline && !arguments_.verify_percent) full_render();
+StepResult JournalRun::edited(const StepReport& entry, std::size_t frame) {
+  StepResult result;
+  if (entry.place.step == 0) {
+    const Frame& base = replayer_.image().frame;
+    result.counters.samples_total = std::uint64_t{base.width} * base.height * report_.view.samples;
+    result.counters.rebuilt.ray_trees = ray_trees_rebuilt_;
+    result.classification.change = ChangeClass::base;
+    return result;
+  }
+  const Edit& edit = edits_of(entry.place.step)[frame];
+  const std::filesystem::path folder = journal_.path.parent_path();
+  is_dragging_ = entry.is_drag;
+  return entry.is_drag ? replayer_.drag(edit, journal_.file, folder) : replayer_.step(edit, journal_.file, folder);
 }
 
-/// Takes over what is in the folder already, and goes where that left off.
-void JournalRun::resume() {
+void JournalRun::run_frame(std::uint32_t step, std::size_t frame) {
+  StepReport entry = new_entry(step, frame);
+  console_.check_interrupt();
+  show_part(entry);
+  StepResult result;
+  auto start = std::chrono::steady_clock::now();
+  try {
+    catch_up();
+    start = std::chrono::steady_clock::now();
+    result = edited(entry, frame);
+  } catch (const ResourceError&) {  // with more memory the run goes on from here
+    leave_off();
+    throw;
+  } catch (const std::bad_alloc&) {
+    leave_off();
+    throw;
+  }
+  entry.change = result.classification.change;
+  entry.reasons = result.classification.reasons;
+  entry.counters = result.counters;
+  entry.seconds = result.seconds;
+  finish(std::move(entry), result, start);
+}
+
+/// The entry of a drag or wedge as a whole, which names the last of its frames; a dragged selection goes back into the
+/// ray trees.
+void JournalRun::end_numbered(std::uint32_t step) {
   const auto start = std::chrono::steady_clock::now();
-  report_.resumed = folder_.kept();
-  for (const Json& entry : report_.resumed)
-    if (entry.at("verify").is_object())
-      pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
-  apply_to(std::min(report_.resumed.back().at("step").get<std::size_t>(), journal_.steps.size()));
-  if (arguments_.baseline || arguments_.verify_percent) full_render();
-  report_.resume_seconds = seconds_since(start);
-  console_.line("resumed after step " + std::to_string(steps_done_) + ": " + std::to_string(report_.resumed.size()) +
-                " finished frames kept");
+  const std::size_t last = plan_.frames_in(step) - 1;
+  StepReport entry = step_so_far_.value_or(new_entry(step, last));
+  step_so_far_.reset();
+  entry.is_whole_step = true;
+  entry.place = new_entry(step, last).place;
+  entry.edits_hash = plan_.hashes().after(step);
+  entry.counters = Counters();
+  entry.seconds = Seconds();
+  entry.reasons = {entry.is_drag ? "the selection is released where the last entry put it"
+                                 : "the last value of the wedge stays"};
+  if (is_dragging_) {
+    const StepResult result = replayer_.release();
+    is_dragging_ = false;
+    entry.counters = result.counters;
+    entry.seconds = result.seconds;
+  }
+  // The class is that of all its frames, those of earlier commands included.
+  entry.change = ChangeClass::color;
+  for (std::size_t frame = 0; frame <= last; ++frame) {
+    if (!plan_.keeps(step, frame)) continue;
+    const Json kept = plan_.kept_entry(step, frame);
+    entry.change = combined(entry.change, change_class_of(kept.value("class", "")));
+    if (frame == last) take_files(kept, entry);
+  }
+  entry.change = combined(entry.change, step_class_);
+  step_class_ = ChangeClass::color;
+  entry.frame = frame_name(entry.place);
+  entry.preview = preview_name(entry.place);
+  entry.resident = replayer_.resident();
+  entry.peak_rss_bytes = peak_rss_bytes();
+  entry.seconds.total = seconds_since(start);
+  trace_step(entry, start, console_.trace());
+  folder_.note(std::move(entry));
 }
 
 /// The share of the run that a frame is, and what it is.
 void JournalRun::show_part(const StepReport& entry) {
-  const auto done = static_cast<double>(report_.resumed.size() + report_.steps.size());
-  const auto all = static_cast<double>(frames_);
+  const auto done = static_cast<double>(frames_done_), all = static_cast<double>(plan_.frames());
   const auto share = [&](double frames) { return (runs_before_ + frames / all) / runs_; };
-  console_.part(share(done), share(done + 1),
-                "step " + step_label(entry.step, entry.frame_in_step()) + " " + entry.name);
-}
-
-void JournalRun::base_step() {
-  StepReport entry;
-  entry.name = "base";
-  show_part(entry);
-  const Frame& frame = replayer_.image().frame;
-  entry.counters.samples_total = std::uint64_t{frame.width} * frame.height * report_.view.samples;
-  entry.counters.rebuilt.ray_trees = ray_trees_rebuilt_;
-  if (arguments_.baseline && !arguments_.verify_percent) full_render();
-  finish(std::move(entry), StepResult(), std::chrono::steady_clock::now());
-}
-
-/// Does a frame's work, writes it and notes it; its class. An entry that has reasons already keeps them and its class.
-template <class Work>
-ChangeClass JournalRun::frame(StepReport entry, const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  console_.check_interrupt();
-  show_part(entry);
-  StepResult result;
-  try {
-    result = work();
-  } catch (const ResourceError&) {  // with more memory the run goes on from here
-    leave_off();
-    throw;
-  }
-  if (entry.reasons.empty()) {
-    entry.change = result.classification.change;
-    entry.reasons = result.classification.reasons;
-  }
-  entry.counters = result.counters;
-  entry.seconds = result.seconds;
-  const ChangeClass change = entry.change;
-  finish(std::move(entry), result, start);
-  return change;
-}
-
-void JournalRun::journal_step(const JournalStep& step) {
-  StepReport entry;
-  entry.step = static_cast<std::uint32_t>(++steps_done_);
-  entry.name = step.name;
-  const std::filesystem::path folder = journal_.path.parent_path();
-  const auto edit = [&](const Edit& patch) { return replayer_.step(patch, journal_.file, folder); };
-  if (step.drag.empty() && step.wedge.empty()) {
-    frame(entry, [&] { return edit(step.edit); });
-    return;
-  }
-  StepReport last = entry;
-  last.change = ChangeClass::color;
-  std::uint32_t number = 0;
-  for (const Edit& patch : frames_of(step)) {
-    (step.drag.empty() ? entry.wedge_frame : entry.drag_frame) = ++number;
-    const ChangeClass change =
-        frame(entry, [&] { return step.drag.empty() ? edit(patch) : replayer_.drag(patch, journal_.file, folder); });
-    last.change = combined(last.change, change);
-  }
-  if (step.drag.empty()) {
-    last.reasons = {"the last value of the wedge stays"};
-    frame(last, [&] { return edit({}); });
-  } else {
-    last.reasons = {"the selection is released where the last entry put it"};
-    frame(last, [&] { return replayer_.release(); });
-  }
+  console_.part(share(done), share(done + 1), "step " + label_of(entry) + " " + entry.name);
 }
 
 void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {
   FrameMeta meta;
   meta.scene_hash = report_.scene_hash;
-  meta.journal_hash = report_.journal_hash;
-  folder_.write_step(entry, replayer_.image(), result.changed_pixels, std::move(meta),
-                     arguments_.layers ? &replayer_.state().scene() : nullptr);
+  meta.edits_hash = entry.edits_hash;
+  const bool is_numbered = entry.place.number.has_value();
+  folder_.write_frame(entry, replayer_.image(), {result.changed_pixels, follows_last_}, std::move(meta),
+                      arguments_.layers ? &replayer_.state().scene() : nullptr);
+  follows_last_ = true;
   if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
   entry.seconds.total = seconds_since(start);
   entry.resident = replayer_.resident();
   entry.peak_rss_bytes = peak_rss_bytes();
-  report_.steps.push_back(std::move(entry));
-  if (arguments_.verify_percent) verify(report_.steps.back());
-  folder_.note_step(report_.steps.back());
-  trace_step(report_.steps.back(), start, console_.trace());
-  print(report_.steps.back());
+  if (arguments_.verify_percent) verify(entry);
+  trace_step(entry, start, console_.trace());
+  print(entry);
+  if (is_numbered) {
+    step_class_ = combined(step_class_, entry.change);
+    step_so_far_ = entry;
+  }
+  folder_.note(std::move(entry));
 }
 
 Frame JournalRun::full_render() {
@@ -250,24 +306,38 @@ Frame JournalRun::full_render() {
 }
 
 void JournalRun::verify(StepReport& entry) {
-  const std::size_t round = report_.resumed.size() + report_.steps.size() - 1;
   const FrameDifference difference =
-      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent, round);
+      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent, frame_number_);
   entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
+  pixels_compared_ += difference.pixels_compared;
   pixels_different_ += difference.pixels_different;
 }
 
 void JournalRun::print(const StepReport& entry) {
   const Counters& counters = entry.counters;
-  std::string line = step_label(entry.step, entry.frame_in_step()) + " " +
-                     std::string(change_class_name(entry.change)) + " \"" + printable(entry.name) +
-                     "\": " + std::to_string(counters.pixels_changed) + " pixels changed, " +
+  std::string line = label_of(entry) + " " + std::string(change_class_name(entry.change)) + " \"" +
+                     printable(entry.name) + "\": " + std::to_string(counters.pixels_changed) + " pixels changed, " +
                      std::to_string(counters.ray_updates) + " ray updates, " + std::to_string(counters.shadow_updates) +
                      " shadow updates, " + std::to_string(entry.seconds.total) + " s";
   if (entry.verify)
     line += ", verified: " + std::to_string(entry.verify->pixels_different) + " of " +
             std::to_string(entry.verify->pixels_compared) + " pixels differ";
-  console_.line(line);
+  console_.log_line(line);
+}
+
+void JournalRun::print_summary() {
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.3g s", seconds_since(start_));
+  std::string line = plan_.folder().string() + ": " + std::to_string(plan_.frames()) + " frames";
+  if (plan_.kept_frames() > 0) line += " (" + std::to_string(plan_.kept_frames()) + " kept)";
+  line += std::string(" in ") + seconds;
+  if (arguments_.verify_percent)
+    line += ", verified: " + std::to_string(pixels_different_) + " of " + std::to_string(pixels_compared_) +
+            " pixels differ";
+  if (arguments_.report != ReportKind::none)
+    line +=
+        "; see " + (plan_.folder() / (arguments_.report == ReportKind::html ? "report.html" : kReportName)).string();
+  console_.line(printable(line));
 }
 
 }  // namespace relook

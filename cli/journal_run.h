@@ -2,8 +2,9 @@
 // earlier run ended.
 #pragma once
 #include <chrono>
-#include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,9 @@ struct CacheFacts {
 class JournalRun {
  public:
   /// `residency`: null, or with which the cache was opened.
-  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, OpenedCache opened,
+  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan, OpenedCache opened,
              std::unique_ptr<Residency> residency, const CacheFacts& cache,
-             const std::shared_ptr<const DisplayView>& view, const std::filesystem::path& folder);
+             const std::shared_ptr<const DisplayView>& view);
 
   /// Builds their colour trees; no others will be kept.
   void choose_parameters(const std::vector<ParameterSet>& sets) {
@@ -40,39 +41,47 @@ class JournalRun {
     replayer_.choose_parameters(sets);
   }
   /// `place`: of this run among `runs`, from 0. Writes the report at the end of the run, or when a signal or want of
-  /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different.
+  /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different, in frames
+  /// that were kept, too.
   std::uint64_t run(std::size_t place, std::size_t runs);
-  [[nodiscard]] const RunReport& report() const { return report_; }
   /// After run().
   [[nodiscard]] Replayer take_replayer() { return std::move(replayer_); }
 
  private:
   void run_steps();
   void leave_off();
-  void apply_to(std::size_t steps);
-  void start_late();
-  void resume();
-  void base_step();
+  void catch_up();
+  void run_step(std::uint32_t step);
+  [[nodiscard]] StepResult edited(const StepReport& entry, std::size_t frame);
+  void run_frame(std::uint32_t step, std::size_t frame);
+  void pass_kept(std::uint32_t step, std::size_t frame);
+  void end_numbered(std::uint32_t step);
+  [[nodiscard]] StepReport new_entry(std::uint32_t step, std::size_t frame) const;
+  [[nodiscard]] std::span<const Edit> edits_of(std::uint32_t step) const;
   void show_part(const StepReport& entry);
-  void journal_step(const JournalStep& step);
-  template <class Work>
-  ChangeClass frame(StepReport entry, const Work& work);
   void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
   void verify(StepReport& entry);
   Frame full_render();
   void print(const StepReport& entry);
+  void print_summary();
 
   const Arguments& arguments_;
   Console& console_;
   const Journal& journal_;
+  RunPlan& plan_;
   RunFolder folder_;
   Replayer replayer_;
   RunReport report_;
-  std::uint64_t pixels_different_ = 0, ray_trees_rebuilt_ = 0;
-  std::size_t steps_done_ = 0;                  // of the journal
-  std::size_t first_step_ = 0, last_step_ = 0;  // whose frames are asked for
-  std::size_t frames_ = 0;                      // of these steps
-  double runs_before_ = 0, runs_ = 1;           // of the command, for its progress
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::uint64_t pixels_different_ = 0, pixels_compared_ = 0, ray_trees_rebuilt_ = 0;
+  std::vector<const Edit*> pending_;       // of frames that are there already: to be made before the next that is not
+  bool is_dragging_ = false;               // the selection of the present step is out of the ray trees
+  bool follows_last_ = false;              // the frame to come follows the last one written: no edit lies between
+  std::size_t frames_done_ = 0;            // of those asked for
+  std::size_t frame_number_ = 0;           // of the journal, for the tiles that --verify takes
+  std::optional<StepReport> step_so_far_;  // the last frame of the present drag or wedge, if it was made here
+  ChangeClass step_class_ = ChangeClass::color;  // of its frames so far
+  double runs_before_ = 0, runs_ = 1;            // of the command, for its progress
 };
 
 }  // namespace relook

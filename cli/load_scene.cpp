@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "edit/apply.h"
 #include "edit/journal.h"
+#include "report/edit_hashes.h"
 #include "scene/import.h"
 
 namespace relook {
@@ -31,8 +32,10 @@ std::string content_hash(const std::string& path, const LookDocument& document) 
   return digests;
 }
 
-LookDocument patched(LookDocument document, const std::string& patch_path) {
+LookDocument patched(LookDocument document, const std::string& patch_path, std::vector<std::filesystem::path>& files) {
   const Edit edit = read_patch(patch_path);
+  for (const std::string& name : files_of(edit))
+    files.push_back(std::filesystem::path(patch_path).parent_path() / name);
   Camera unused;
   unused.width = unused.height = 1;
   SceneState state(std::move(document), unused, std::make_shared<PyramidStore>());
@@ -62,8 +65,9 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
   ImportedGltf imported = import_gltf(path);
   LoadedDocument loaded;
   loaded.warnings = imported.warnings;
+  loaded.files = imported.files;
   loaded.document = make_look_document(std::move(imported));
-  if (!view.look_patch.empty()) loaded.document = patched(std::move(loaded.document), view.look_patch);
+  if (!view.look_patch.empty()) loaded.document = patched(std::move(loaded.document), view.look_patch, loaded.files);
   std::string digests = content_hash(path, loaded.document);
   if (!view.look_patch.empty()) digests += hash128(read_file(view.look_patch));
   if (view.auto_lights) digests += "lights auto";
@@ -88,6 +92,7 @@ LoadedScene load_scene(const std::string& path, const ViewArguments& view) {
   const Camera camera = set_up_view(loaded, view);
   LoadedScene scene;
   scene.hash = std::move(loaded.hash);
+  scene.files = std::move(loaded.files);
   scene.warnings = std::move(loaded.warnings);
   scene.state = std::make_unique<SceneState>(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
   if (!is_lit(scene.state->scene()))

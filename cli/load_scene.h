@@ -1,5 +1,6 @@
 // From a scene file and the VIEW options to a compiled scene with a camera and lights.
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@ namespace relook {
 
 struct LoadedScene {
   std::unique_ptr<SceneState> state;
-  std::string hash;  // XXH3-128 of the scene's content, the look patch and --lights
+  std::string hash;                          // XXH3-128 of the scene's content, the look patch and --lights
+  std::vector<std::filesystem::path> files;  // that the scene and the patch name
   std::vector<std::string> warnings;
 };
 
@@ -20,6 +22,7 @@ struct LoadedScene {
 struct LoadedDocument {
   LookDocument document;
   std::string hash;
+  std::vector<std::filesystem::path> files;
   std::vector<std::string> warnings;
 };
 [[nodiscard]] LoadedDocument load_document(const std::string& path, const ViewArguments& view);

@@ -3,6 +3,7 @@
 #include <new>
 
 #include "base/parallel.h"
+#include "outputs.h"
 #include "scene/image_library.h"
 #include "verbs.h"
 
@@ -71,6 +72,7 @@ ExitCode run(const Arguments& arguments) {
   set_thread_count(arguments.threads);
   const int code = guarded(
       [&] {
+        check_outputs(arguments);
         const ExitCode result = run_verb(arguments, console);
         require_printed();
         return result;
@@ -78,7 +80,7 @@ ExitCode run(const Arguments& arguments) {
       report);
   const int traced = guarded(
       [&] {
-        console.trace().write();
+        if (code != static_cast<int>(ExitCode::usage)) console.trace().write();
         return ExitCode::ok;
       },
       report);

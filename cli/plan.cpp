@@ -1,6 +1,7 @@
 // `relook plan`: the class, samples, seconds and bytes of each frame that a replay will have, without replaying it.
 #include "engine/plan.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "edit/apply.h"
@@ -11,9 +12,9 @@ namespace relook {
 namespace {
 
 Json frame_json(const PlannedFrame& frame) {
-  return {{"step", frame.step},
+  return {{"step", frame.place.step},
           {"name", frame.name},
-          {"frame", frame_name(frame.step, frame.frame_in_step)},
+          {"frame", frame_name(frame.place)},
           {"class", change_class_name(frame.classification.change)},
           {"reasons", frame.classification.reasons},
           {"samples_affected", frame.samples_affected},
@@ -29,7 +30,7 @@ void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
                 100 * static_cast<double>(frame.samples_affected) / static_cast<double>(samples),
                 static_cast<unsigned long long>(frame.pixels_changed), frame.seconds,
                 static_cast<double>(frame.resident_bytes) / (1 << 20));
-  console.line(step_label(frame.step, frame.frame_in_step) + " " +
+  console.line((frame.is_whole_step ? std::to_string(frame.place.step) : step_label(frame.place)) + " " +
                std::string(change_class_name(frame.classification.change)) + " \"" + printable(frame.name) + "\"" +
                numbers);
 }
@@ -59,7 +60,8 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
     seconds += frame.seconds;
     most_bytes = std::max(most_bytes, frame.resident_bytes);
   }
-  const Json result{{"cache", cache},
+  const Json result{{"relook", "plan/1"},
+                    {"cache", cache},
                     {"journal", journal.file},
                     {"samples_total", plan.samples_total},
                     {"proxy", {plan.proxy_width, plan.proxy_height}},
@@ -67,7 +69,9 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
                     {"most_resident_bytes", most_bytes},
                     {"frames", std::move(frames)}};
   char total[96];
-  std::snprintf(total, sizeof total, "%zu frames: %.3f s without writing, at most %.1f M resident", plan.frames.size(),
+  const auto frame_count =
+      static_cast<std::size_t>(std::ranges::count(plan.frames, false, &PlannedFrame::is_whole_step));
+  std::snprintf(total, sizeof total, "%zu frames: %.3f s without writing, at most %.1f M resident", frame_count,
                 seconds, static_cast<double>(most_bytes) / (1 << 20));
   console.line(total);
   if (!arguments.json_file.empty()) write_file(arguments.json_file, result.dump(2) + "\n");

@@ -7,6 +7,7 @@
 #include "engine/render.h"
 #include "load_cache.h"
 #include "load_scene.h"
+#include "outputs.h"
 #include "verbs.h"
 
 namespace relook {
@@ -30,6 +31,7 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
+  require_not_outputs(arguments, loaded.files, "a file of the scene");
   require_writable(arguments.output);
   span.emplace(console.trace(), "preprocess");
   RenderStats stats;

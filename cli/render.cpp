@@ -6,26 +6,18 @@
 #include "base/hash.h"
 #include "edit/apply.h"
 #include "engine/layered_frame.h"
+#include "engine/preview.h"
 #include "engine/report.h"
 #include "load_scene.h"
+#include "outputs.h"
+#include "report/edit_hashes.h"
 #include "verbs.h"
 
 namespace relook {
 namespace {
 
-/// Applies one step. Returns its class, as a replay's report has it.
-ChangeClass apply_step(SceneState& state, const Journal& journal, const JournalStep& step) {
-  const auto apply = [&](const Edit& edit) {
-    const SceneDelta delta = apply_edit(state, edit, journal.file, journal.path.parent_path());
-    return classify(state.scene(), delta).change;
-  };
-  ChangeClass change = ChangeClass::color;
-  for (const Edit& frame : frames_of(step)) change = combined(change, apply(frame));
-  return change;
-}
-
-/// The scene as edited by steps 1..last, and where the frame's header says it comes from. `before_last` is called when
-/// the last step is about to change the frame.
+/// The scene as edited by steps 1..last, and where the frame's header says it comes from: as the last frame of a replay
+/// has it. `before_last` is called when that is about to change the frame.
 void apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last, FrameMeta& meta,
                    const std::function<void()>& before_last) {
   if (last && *last > journal.steps.size())
@@ -35,18 +27,22 @@ void apply_journal(SceneState& state, const Journal& journal, const std::optiona
   check_journal(state, journal);
   ChangeClass change = ChangeClass::base;
   for (std::size_t i = 0; i < count; ++i) {
-    const JournalStep& step = journal.steps[i];
-    const bool is_frame_of_last_value = !step.drag.empty() || !step.wedge.empty();
-    if (i + 1 == count && !is_frame_of_last_value) before_last();
-    change = apply_step(state, journal, step);
+    const std::span<const Edit> frames = frames_of(journal.steps[i]);
+    for (const Edit& frame : frames) {
+      if (i + 1 == count && &frame == &frames.back()) before_last();
+      const SceneDelta delta = apply_edit(state, frame, journal.file, journal.path.parent_path());
+      change = classify(state.scene(), delta).change;
+    }
   }
-  meta.journal_hash = journal.hash;
-  meta.step = std::to_string(count);
+  const auto step = static_cast<std::uint32_t>(count);
+  meta.edits_hash = EditHashes(journal).after(step);
+  meta.step = step_label(count == 0 ? FramePlace() : last_place_of(journal.steps[count - 1], step));
   meta.change_class = change_class_name(change);
 }
 
 Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& frame,
               const std::optional<Frame>& before, const FrameMeta& meta, Console& console) {
+  if (is_preview_name(arguments.output)) return encode_png(frame, display_view_of_environment());
   const PixelFormat format = arguments.float_frames ? PixelFormat::float32 : PixelFormat::half;
   if (!arguments.layers) return encode_exr(frame, meta, format);
   const ChangedPixels changed = before ? pixels_between(*before, frame) : ChangedPixels();
@@ -61,9 +57,11 @@ Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& 
 ExitCode run_render(const Arguments& arguments, Console& console) {
   std::optional<Journal> journal;
   if (!arguments.journal.empty()) journal = read_journal(arguments.journal);
+  if (journal) require_not_outputs(arguments, files_of(*journal), "a file of the journal");
   std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
+  require_not_outputs(arguments, loaded.files, "a file of the scene");
   FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
   std::optional<Frame> before;  // the frame that the last step changed
   const auto render_before = [&] {

@@ -9,6 +9,8 @@
 #include "journal_run.h"
 #include "load_cache.h"
 #include "load_scene.h"
+#include "outputs.h"
+#include "report/run_source.h"
 #include "verbs.h"
 
 namespace relook {
@@ -42,7 +44,14 @@ std::vector<Journal> read_journals(const Arguments& arguments) {
   return journals;
 }
 
-/// What --memory and --access-log ask for; null: nothing. The run folder is made to spill into.
+/// The folder, or the nearest one above it that is there.
+std::filesystem::path existing_folder(std::filesystem::path folder) {
+  std::error_code error;
+  while (!folder.empty() && !std::filesystem::is_directory(folder, error)) folder = folder.parent_path();
+  return folder.empty() ? "." : folder;
+}
+
+/// What --memory and --access-log ask for; null: nothing.
 std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::filesystem::path& folder) {
   const StructureOptions& structures = arguments.structures;
   if (!structures.memory_bytes && arguments.access_log.empty()) return nullptr;
@@ -53,10 +62,9 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
   options.working_bytes = tile_bytes / 2;
   for (const EvictionPolicy policy : kEvictionPolicies)
     if (policy_name(policy) == structures.policy) options.policy = policy;
-  options.spill_folder = arguments.spill.empty() ? folder : std::filesystem::path(arguments.spill);
+  options.spill_folder = arguments.spill.empty() ? existing_folder(folder) : std::filesystem::path(arguments.spill);
   if (structures.disk_bytes) options.disk_bytes = *structures.disk_bytes;
   options.logs_accesses = !arguments.access_log.empty();
-  if (arguments.spill.empty()) make_folders(folder);
   return std::make_unique<Residency>(std::move(options));
 }
 
@@ -73,29 +81,32 @@ std::uint64_t samples_in(const Image& image, const std::vector<std::size_t>& til
   return samples;
 }
 
-}  // namespace
-
-ExitCode run_replay(const Arguments& arguments, Console& console) {
-  if (arguments.structures.memory_bytes) give_back_large_blocks();
-  const std::string& cache = arguments.inputs[0];
-  const std::vector<Journal> journals = read_journals(arguments);
-  const std::shared_ptr<const DisplayView> view = display_view_of_environment();
-  const bool has_several = journals.size() > 1;
-  std::vector<std::filesystem::path> folders;
+/// The runs that are to be made, one a journal. Throws UsageError when anything is in the way of one.
+std::vector<RunPlan> plan_runs(const Arguments& arguments, const std::vector<Journal>& journals, const Json& manifest,
+                               const DisplayView* view) {
+  const FrameStyle style{arguments.float_frames, arguments.layers, view != nullptr ? view->id() : ""};
+  std::vector<RunPlan> plans;
+  plans.reserve(journals.size());
   for (const Journal& journal : journals) {
-    folders.push_back(arguments.output);
-    if (has_several) folders.back() /= journal.name;
-    RunFolder::refuse_foreign(folders.back());
+    std::filesystem::path folder = arguments.output;
+    if (journals.size() > 1) folder /= journal.name;
+    require_not_outputs(arguments, files_of(journal), "a file of the journal");
+    plans.emplace_back(arguments, journal, std::move(folder), run_source(manifest, style));
   }
-  Json manifest;
-  require_sound(read_manifest(cache, manifest), cache);
-  if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
-  std::optional<TraceScope> reading(std::in_place, console.trace(), "read cache");
-  std::unique_ptr<Residency> residency = residency_of(arguments, folders.front());
-  OpenedCache opened = open_cache(cache, !arguments.strict, residency.get());
-  std::vector<std::string> damage = sentences(opened.losses);
-  for (std::string& sentence : damage) sentence = cache + ": " + sentence + "; traced again";
-  console.warn(damage);
+  return plans;
+}
+
+Json result_json(const Arguments& arguments, const RunPlan& plan) {
+  Json result{{"run", printable(plan.folder().string())}, {"frames", plan.frames()}, {"kept", plan.kept_frames()}};
+  if (arguments.json && arguments.report != ReportKind::none) {
+    const std::string file = (plan.folder() / kReportName).string();
+    result["report"] = parse_json(text_of(read_file(file)), file);
+  }
+  return result;
+}
+
+void require_fitting(const Arguments& arguments, const OpenedCache& opened) {
+  const std::string& cache = arguments.inputs[0];
   if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != opened.scene_hash)
     require_sound({CacheFault::other_scene, "", ""}, cache);
   const std::uint32_t shadow_bits = opened.image.view.shadow_bits;
@@ -103,28 +114,77 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     throw Error(ExitCode::cache_mismatch, cache, "",
                 "the cache holds shadow counters of " + std::to_string(shadow_bits) +
                     " bits; preprocess again with --shadow-bits");
-  const CacheFacts facts{opened.scene_hash, cache_sizes(manifest), damage,
-                         samples_in(opened.image, opened.losses.tiles)};
+}
 
-  reading.reset();
-  std::uint64_t pixels_different = 0;
-  std::optional<TraceScope> checking(std::in_place, console.trace(), "check journals");
-  for (const Journal& journal : journals) check_journal(*opened.state, journal);
-  checking.reset();
-  Json runs = Json::array();
-  for (std::size_t i = 0; i < journals.size(); ++i) {
-    if (i > 0 && !opened.state) {  // pieces of the run before may be anywhere
-      residency = residency_of(arguments, folders[i]);
-      opened = open_cache(cache, !arguments.strict, residency.get());
-    }
-    OpenedCache next = i + 1 < journals.size() && !residency ? copy_of(opened) : OpenedCache();
-    const std::vector<ParameterSet> chosen = chosen_parameters(*opened.state, arguments.structures.params);
-    JournalRun run(arguments, console, journals[i], std::exchange(opened, std::move(next)), std::move(residency), facts,
-                   view, folders[i]);
+/// Replays the journals of one command, one after the other, each from the state of the cache.
+class ReplayCommand {
+ public:
+  ReplayCommand(const Arguments& arguments, Console& console, const std::vector<Journal>& journals,
+                std::vector<RunPlan>& plans, const Json& manifest, std::shared_ptr<const DisplayView> view)
+      : arguments_(arguments), console_(console), journals_(journals), plans_(plans), view_(std::move(view)) {
+    open_cache_anew();
+    std::vector<std::string> damage = sentences(opened_.losses);
+    for (std::string& sentence : damage) sentence = arguments.inputs[0] + ": " + sentence + "; traced again";
+    console.warn(damage);
+    require_fitting(arguments, opened_);
+    facts_ = {opened_.scene_hash, cache_sizes(manifest), damage, samples_in(opened_.image, opened_.losses.tiles)};
+    const TraceScope checking = console.span("check journals");
+    for (const Journal& journal : journals) check_journal(*opened_.state, journal);
+  }
+
+  /// The number of pixels that --verify found different.
+  std::uint64_t run(std::size_t i) {
+    if (!opened_.state) open_cache_anew();  // pieces of the run before may be anywhere
+    const bool is_last = i + 1 == plans_.size();
+    OpenedCache next = !is_last && !residency_ ? copy_of(opened_) : OpenedCache();
+    const std::vector<ParameterSet> chosen = chosen_parameters(*opened_.state, arguments_.structures.params);
+    JournalRun run(arguments_, console_, journals_[i], plans_[i], std::exchange(opened_, std::move(next)),
+                   std::move(residency_), facts_, view_);
     if (!chosen.empty()) run.choose_parameters(chosen);
-    pixels_different += run.run(i, journals.size());
-    runs.push_back({{"run", folders[i].string()}, {"report", report_json(run.report())}});
-    if (i + 1 == journals.size()) keep_to_the_end(run.take_replayer());
+    const std::uint64_t different = run.run(i, plans_.size());
+    if (is_last) keep_to_the_end(run.take_replayer());
+    return different;
+  }
+
+ private:
+  void open_cache_anew() {
+    const TraceScope reading = console_.span("read cache");
+    residency_ = residency_of(arguments_, plans_.front().folder());
+    opened_ = open_cache(arguments_.inputs[0], !arguments_.strict, residency_.get());
+  }
+
+  const Arguments& arguments_;
+  Console& console_;
+  const std::vector<Journal>& journals_;
+  std::vector<RunPlan>& plans_;
+  std::shared_ptr<const DisplayView> view_;
+  std::unique_ptr<Residency> residency_;
+  OpenedCache opened_;
+  CacheFacts facts_;
+};
+
+}  // namespace
+
+ExitCode run_replay(const Arguments& arguments, Console& console) {
+  if (arguments.structures.memory_bytes) give_back_large_blocks();
+  const std::string& cache = arguments.inputs[0];
+  const std::vector<Journal> journals = read_journals(arguments);
+  const std::shared_ptr<const DisplayView> view = display_view_of_environment();
+  Json manifest;
+  require_sound(read_manifest(cache, manifest), cache);
+  std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, view.get());
+  if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
+  std::optional<ReplayCommand> command;
+  std::uint64_t pixels_different = 0;
+  Json runs = Json::array();
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const bool is_complete = plans[i].is_complete();
+    if (!is_complete && !command) command.emplace(arguments, console, journals, plans, manifest, view);
+    if (is_complete)
+      console.line(printable(plans[i].folder().string()) + ": complete, all " + std::to_string(plans[i].frames()) +
+                   " frames are there");
+    pixels_different += is_complete ? plans[i].pixels_different() : command->run(i);
+    runs.push_back(result_json(arguments, plans[i]));
   }
   console.json({{"runs", std::move(runs)}, {"pixels_different", pixels_different}});
   return pixels_different == 0 ? ExitCode::ok : ExitCode::difference;

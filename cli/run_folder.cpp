@@ -1,174 +1,134 @@
 #include "run_folder.h"
 
+#include <unistd.h>
+
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <set>
+#include <cstdio>
+#include <random>
 #include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "engine/layered_frame.h"
 #include "engine/overlay.h"
 #include "page/run_page.h"
+#include "report/report_file.h"
+#include "shim_tmp.h"
 
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 4> kFrameFolders{"frames", "previews", "overlays", "pixels"};
-constexpr std::array<std::string_view, 7> kRunEntries{"report.json", "report.html", "frames",     "previews",
-                                                      "overlays",    "pixels",      kProgressName};
-
-void remove_entry(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::remove_all(path, error);
-  if (error) throw IoError(path.string(), "cannot be removed: " + error.message());
+std::string new_command_number() {
+  std::random_device random;
+  const Json seed{random(), random(), ::getpid(), std::chrono::steady_clock::now().time_since_epoch().count()};
+  return hash128(bytes_of(seed.dump())).substr(0, 16);
 }
 
-std::filesystem::path made(std::filesystem::path folder) {
-  make_folders(folder);
-  return folder;
-}
+using StepRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// A temporary file of write_file() that a killed run has left.
-bool is_unfinished(const std::filesystem::path& file) {
-  const std::string name = file.filename().string();
-  return name.starts_with(".report.") && name.ends_with(".tmp");
-}
-
-/// The last frame of its step: not one of a drag or a wedge.
-bool ends_step(const Json& note) {
-  const Json& entry = note.at("entry");
-  return entry.at("drag_frame").is_null() && entry.at("wedge_frame").is_null();
+/// Ranges that were asked for so far, with one more; those that meet are one.
+StepRanges with_range(const Json& parts, std::uint32_t first, std::uint32_t last) {
+  StepRanges ranges{{first, last}};
+  if (parts.is_array())
+    for (const Json& part : parts) {
+      unsigned from = 0, to = 0;
+      if (part.is_string() && std::sscanf(part.get_ref<const std::string&>().c_str(), "%u-%u", &from, &to) == 2)
+        ranges.emplace_back(from, to);
+    }
+  std::ranges::sort(ranges);
+  StepRanges joined;
+  for (const auto& range : ranges) {
+    if (!joined.empty() && range.first <= joined.back().second + 1)
+      joined.back().second = std::max(joined.back().second, range.second);
+    else
+      joined.push_back(range);
+  }
+  return joined;
 }
 
 }  // namespace
 
-void RunFolder::refuse_foreign(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return;
-  if (!std::filesystem::is_directory(path, error)) throw InputError(path.string(), "", "exists and is not a folder");
-  if (std::filesystem::is_empty(path, error)) return;
-  for (const std::string_view entry : kRunEntries)
-    if (std::filesystem::exists(path / entry, error)) return;
-  throw InputError(path.string(), "", "exists and is not a run: not overwritten");
-}
-
-RunFolder::RunFolder(std::filesystem::path path, std::uint32_t width, std::uint32_t height, PixelFormat format,
-                     std::shared_ptr<const DisplayView> view, const std::optional<std::string>& run, bool is_fresh)
-    : path_(made(std::move(path))),
-      progress_(path_),
-      notes_steps_(run.has_value()),
-      format_(format),
-      encoder_(width, height, format),
-      view_(std::move(view)),
-      preview_encoder_(width, height, view_) {
-  if (run && !is_fresh) keep_finished_steps(*run);
-  remove_all_but_kept();
-  progress_.restart(run.value_or(""), kept_notes_);
+RunFolder::RunFolder(RunPlan& plan, const Journal& journal, Style style)
+    : plan_(plan),
+      journal_(journal),
+      style_(std::move(style)),
+      path_(plan.folder()),
+      command_(new_command_number()),
+      encoder_(style_.width, style_.height, style_.format),
+      preview_encoder_(style_.width, style_.height, style_.view) {
+  make_folders(path_);
+  progress_ = std::make_unique<ProgressFile>(path_, plan.first_step(), plan.last_step());
+  progress_->exclusively([&] {
+    plan.refresh();
+    plan.clear_way([&] { return progress_->lock_all_steps(); });
+  });
+  progress_->begin(plan.source());
+  plan.refresh();
+  progress_->unlock_other_steps();
   make_folders(path_ / "frames");
   make_folders(path_ / "previews");
 }
 
-void RunFolder::keep_finished_steps(const std::string& run) {
-  std::size_t whole_steps = 0;  // notes of them
-  try {
-    for (Json& note : progress_.entries(run)) {
-      if (!has_files_of(note)) break;
-      kept_notes_.push_back(std::move(note));
-      if (ends_step(kept_notes_.back())) whole_steps = kept_notes_.size();
-    }
-  } catch (const Json::exception&) {  // not a note after all
-  }
-  kept_notes_.resize(whole_steps);
-  for (const Json& note : kept_notes_) kept_.push_back(note.at("entry"));
-}
+RunFolder::~RunFolder() = default;
 
-/// Whether all files of a note are there with their hashes.
-bool RunFolder::has_files_of(const Json& note) const {
-  const auto is_sound = [&](const std::string& name, const std::string& hash) {
-    std::error_code error;
-    return std::filesystem::is_regular_file(path_ / name, error) && hash128(read_file(path_ / name)) == hash;
-  };
-  const Json& entry = note.at("entry");
-  if (!is_sound(entry.at("frame").get<std::string>(), entry.at("frame_hash").get<std::string>())) return false;
-  for (const auto& [name, hash] : note.at("files").items())
-    if (!is_sound(name, hash.get<std::string>())) return false;
-  return true;
-}
-
-void RunFolder::remove_all_but_kept() {
-  std::set<std::filesystem::path> kept;
-  for (const Json& note : kept_notes_) {
-    kept.insert(path_ / note.at("entry").at("frame").get<std::string>());
-    for (const auto& file : note.at("files").items()) kept.insert(path_ / file.key());
-  }
-  remove_entry(path_ / "report.json");
-  remove_entry(path_ / "report.html");
-  std::error_code ignored;
-  for (const auto& file : std::filesystem::directory_iterator(path_, ignored))
-    if (is_unfinished(file.path())) remove_entry(file.path());
-  for (const std::string_view folder : kFrameFolders) {
-    std::error_code error;
-    if (kept.empty()) {
-      remove_entry(path_ / folder);
-      continue;
-    }
-    for (const auto& file : std::filesystem::directory_iterator(path_ / folder, error))
-      if (!kept.contains(file.path())) remove_entry(file.path());
-  }
-}
-
-void RunFolder::write_step(StepReport& step, const Image& image, const ChangedPixels& changed_pixels, FrameMeta meta,
-                           const Scene* layers) {
+void RunFolder::write_frame(StepReport& step, const Image& image, const FrameChange& change, FrameMeta meta,
+                            const Scene* layers) {
   const auto start = std::chrono::steady_clock::now();
   finish_writing();
-  std::optional<Json> last = std::exchange(finished_, std::nullopt);
+  std::vector<StepReport> ready = std::exchange(notes_, {});
   const Frame& frame = image.frame;
+  const bool takes_all = !std::exchange(has_written_, true) || !change.follows_last;
   const auto take = [&](auto& encoder) {
-    if (frame_hashes_.empty())
+    if (takes_all)
       encoder.update(frame);
     else
-      encoder.update(frame, changed_pixels);
+      encoder.update(frame, change.pixels);
   };
   if (layers == nullptr) take(encoder_);
   take(preview_encoder_);
-  preview_is_stale_ = preview_is_stale_ || !changed_pixels.empty();
-  meta.step = step_label(step.step, step.frame_in_step());
+  preview_is_stale_ = preview_is_stale_ || takes_all || !change.pixels.empty();
+  meta.step = step_label(step.place);
   meta.change_class = change_class_name(step.change);
-  step.frame = frame_name(step.step, step.frame_in_step());
-  step.preview = preview_name(step.step, step.frame_in_step());
+  step.frame = frame_name(step.place);
+  step.preview = preview_name(step.place);
+  ++own_frames_;
   std::optional<Bytes> layered;
-  if (layers != nullptr) layered = encode_layered_exr({*layers, image.view, frame, changed_pixels, format_}, meta);
-  writing_ =
-      std::async(std::launch::async, [this, frame_path = path_ / step.frame, preview_path = path_ / step.preview,
-                                      meta = std::move(meta), last = std::move(last), layered = std::move(layered)] {
-        append_note(last);
-        write_frame(frame_path, preview_path, meta, layered);
-      });
+  if (layers != nullptr) layered = encode_layered_exr({*layers, image.view, frame, change.pixels, style_.format}, meta);
+  writing_ = std::async(std::launch::async,
+                        [this, step, meta = std::move(meta), ready = std::move(ready), layered = std::move(layered)] {
+                          const Uninterrupted until_written;  // a finished frame stays
+                          for (const StepReport& entry : ready) progress_->append(step_json(entry));
+                          encode_and_write(step, meta, layered);
+                        });
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void RunFolder::write_frame(const std::filesystem::path& frame, const std::filesystem::path& preview,
-                            const FrameMeta& meta, const std::optional<Bytes>& layered) {
+void RunFolder::encode_and_write(const StepReport& step, const FrameMeta& meta, const std::optional<Bytes>& layered) {
   const Bytes bytes = layered ? *layered : encoder_.exr(meta);
-  write_file(frame, bytes);
-  frame_hashes_.push_back(hash128(bytes));
-  if (std::exchange(preview_is_stale_, false)) preview_ = preview_encoder_.png();
-  write_file(preview, preview_);
-  preview_hash_ = hash128(preview_);
+  write_file(path_ / step.frame, bytes);
+  if (std::exchange(preview_is_stale_, false)) {
+    preview_ = preview_encoder_.png();
+    preview_hash_ = hash128(preview_);
+  }
+  write_file(path_ / step.preview, preview_);
+  last_files_ = {step.frame,
+                 {{step.frame, stamp_of(path_ / step.frame, hash128(bytes))},
+                  {step.preview, stamp_of(path_ / step.preview, preview_hash_)}}};
 }
 
-void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer, const StepResult& result) {
+void RunFolder::write_overlays(StepReport& step, const Replayer& replayer, const StepResult& result) {
   make_folders(path_ / "overlays");
   const auto write = [&](const char* kind, const auto& draw) {
     Frame frame = replayer.image().frame;
     for (std::size_t tile = 0; tile < tile_count(frame.width, frame.height); ++tile) draw(frame, tile);
     const std::string name = "overlays/" + std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png";
-    const Bytes bytes = encode_png(frame, view_);
+    const Bytes bytes = encode_png(frame, style_.view);
     write_file(path_ / name, bytes);
-    overlay_hashes_[name] = hash128(bytes);
+    step.files[name] = stamp_of(path_ / name, hash128(bytes));
   };
+  step.has_overlays = true;
   if (!result.dependent.empty()) {
     write("dependent", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.dependent[tile]); });
     write("touched", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.touched[tile]); });
@@ -177,32 +137,86 @@ void RunFolder::write_overlays(const StepReport& step, const Replayer& replayer,
     write("groups", [&](Frame& frame, std::size_t tile) { draw_groups(frame, tile, replayer.regions().groups(tile)); });
 }
 
-void RunFolder::note_step(const StepReport& step) {
-  if (notes_steps_) finished_ = Json{{"entry", step_json(step)}, {"files", std::exchange(overlay_hashes_, {})}};
+void RunFolder::note(StepReport step) {
+  step.command = command_;
+  notes_.push_back(std::move(step));
 }
 
-/// Waits; then all is known that a note says.
+/// Waits; then the files are known that entries lack.
 void RunFolder::finish_writing() {
   if (writing_.valid()) writing_.get();
-  if (!finished_) return;
-  Json& entry = finished_->at("entry");
-  entry["frame_hash"] = frame_hashes_.back();
-  (*finished_)["files"][entry.at("preview").get<std::string>()] = preview_hash_;
+  for (StepReport& step : notes_)
+    if (step.frame == last_files_.first) step.files.insert(last_files_.second.begin(), last_files_.second.end());
 }
 
-void RunFolder::append_note(const std::optional<Json>& note) {
-  if (note) progress_.append(*note);
-}
-
-void RunFolder::write_report(RunReport& report, const Journal& journal) {
+void RunFolder::append_notes() {
   finish_writing();
-  require(frame_hashes_.size() == report.steps.size(), "each step of a report has written its frame");
-  for (std::size_t i = 0; i < report.steps.size(); ++i) report.steps[i].frame_hash = frame_hashes_[i];
-  append_note(std::exchange(finished_, std::nullopt));
-  const Json json = report_json(report);
-  write_run_page(path_, json, journal);
-  write_file(path_ / "report.json", json.dump(2) + "\n");
-  if (!report.interrupted) progress_.remove();
+  for (const StepReport& step : std::exchange(notes_, {})) progress_->append(step_json(step));
+}
+
+/// Whether all frames of the journal are in it.
+bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
+  const RunLedger ledger(path_);
+  noted_bytes_ = progress_->size_bytes();
+  const Json& before = ledger.head();
+  const auto is_there = [&](std::uint32_t step, std::size_t frame) {
+    const LedgerKey key = plan_.key_of(step, frame);
+    const RunLedger::Note* note = ledger.find(key);
+    return note != nullptr && plan_.is_of_journal(key, *note);
+  };
+  const auto missing_in = [&](std::uint32_t first, std::uint32_t last) {
+    std::size_t missing = 0;
+    for (std::uint32_t step = first; step <= std::min<std::size_t>(last, journal_.steps.size()); ++step)
+      for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame) missing += is_there(step, frame) ? 0 : 1;
+    return missing;
+  };
+  const StepRanges parts =
+      with_range(before.is_object() ? before.value("parts", Json()) : Json(), plan_.first_step(), plan_.last_step());
+  report.parts.clear();
+  std::size_t missing = 0, frames = 0;
+  for (const auto& [first, last] : parts) {
+    report.parts.push_back(std::to_string(first) + "-" + std::to_string(last));
+    missing += missing_in(first, last);
+  }
+  for (const auto& [key, note] : ledger.notes())
+    frames += plan_.is_of_journal(key, note) && plan_.is_frame(key) ? 1 : 0;
+  report.interrupted = interrupted || missing > 0;
+  report.frames = frames;
+  report.resumed_frames = frames - std::min(frames, own_frames_);
+  if (!report.full_render_seconds && before.is_object() && before.value("full_render_seconds", Json()).is_number())
+    report.full_render_seconds = before["full_render_seconds"].get<double>();
+
+  report_file_ = std::make_unique<ReportFile>(path_ / kReportName, report_head_json(report));
+  for (const auto& [key, note] : ledger.notes()) {
+    if (!plan_.is_of_journal(key, note)) continue;
+    Json entry = ledger.entry(note);
+    entry["resumed"] = entry.value("command", "") != command_;
+    if (key.first > 0) entry["name"] = journal_.steps[key.first - 1].name;
+    report_file_->add(entry);
+  }
+  report_file_->publish();
+  return missing_in(0, static_cast<std::uint32_t>(journal_.steps.size())) == 0;
+}
+
+void RunFolder::write_page(const RunReport& report, bool is_quick, const std::function<void()>& check) {
+  const ReportEntries entries = report_file_->entries();
+  write_run_page({path_, report_head_json(report), entries, journal_, !is_quick, check});
+}
+
+void RunFolder::write_report(RunReport& report, bool interrupted, const std::function<void()>& check) {
+  append_notes();
+  if (style_.report == ReportKind::none) return;
+  const bool is_alone = progress_->lock_all_steps();
+  bool is_whole = false;
+  progress_->exclusively([&] { is_whole = write_report_file(report, interrupted); });
+  progress_->unlock_other_steps();
+  if (style_.report == ReportKind::html) {
+    // Of many commands that write one run, not each makes the whole page anew.
+    const bool is_quick = interrupted || !is_alone || !(is_whole || 2 * own_frames_ >= report.frames);
+    progress_->exclusively_for_page([&] { write_page(report, is_quick, check); });
+  }
+  if (!report.interrupted && progress_->lock_all_steps() && progress_->size_bytes() == noted_bytes_)
+    progress_->remove();
 }
 
 }  // namespace relook

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/parallel.h"
 
 namespace relook {
 
@@ -39,7 +40,8 @@ void TraceFile::amounts(std::string name, Json values) {
 
 void TraceFile::write() const {
   if (path_.empty()) return;
-  const Json document{{"displayTimeUnit", "ms"}, {"traceEvents", events_}};
+  const Uninterrupted to_the_end;
+  const Json document{{"relook", "trace/1"}, {"displayTimeUnit", "ms"}, {"traceEvents", events_}};
   write_file(path_, document.dump() + "\n");
 }
 

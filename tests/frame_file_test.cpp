@@ -32,7 +32,7 @@ Frame gradient_frame() {
   return frame;
 }
 
-const FrameMeta kMeta{"scene-hash", "journal-hash", "3_01", "optical"};
+const FrameMeta kMeta{"scene-hash", "edits-hash", "3_01", "optical"};
 
 TEST(FrameFile, float_frames_come_back_bit_for_bit) {
   const Frame frame = gradient_frame();
@@ -103,7 +103,7 @@ TEST(FrameFile, unchanged_tiles_are_not_encoded_again) {
 TEST(FrameFile, header_names_scene_journal_step_and_class) {
   const Bytes bytes = encode_exr(gradient_frame(), kMeta, PixelFormat::half);
   const std::string_view text = text_of(bytes);
-  for (const char* expected : {"relook:scene", "scene-hash", "relook:journal", "journal-hash", "relook:step", "3_01",
+  for (const char* expected : {"relook:scene", "scene-hash", "relook:edits", "edits-hash", "relook:step", "3_01",
                                "relook:class", "optical", "chromaticities", "tiles"})
     EXPECT_NE(text.find(expected), std::string_view::npos) << expected;
   EXPECT_EQ(text.find("capDate"), std::string_view::npos);

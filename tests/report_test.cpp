@@ -7,6 +7,9 @@
 #include <filesystem>
 #include <regex>
 
+#include "report/report_file.h"
+#include "run_program.h"
+
 namespace relook {
 namespace {
 
@@ -84,40 +87,60 @@ Schema shipped_schema() {
   return Schema(parse_json(text_of(bytes), "report.schema.json"));
 }
 
-RunReport small_report() {
+RunReport small_run() {
   RunReport report;
   report.scene = "scene.gltf";
+  report.source = Json::object();
+  report.places = {{"cache", {"../c", "/c"}}, {"journal", {"../j.json", "/j.json"}}};
   report.camera.width = 4;
   report.camera.height = 3;
   report.threads = 2;
   report.cache.bytes_by_part["look"] = 10;
   report.cache.total_bytes = 10;
-  StepReport base;
-  base.name = "base";
-  base.frame = frame_name(0, std::nullopt);
-  base.frame_hash = std::string(32, 'a');
-  report.steps.push_back(base);
-  StepReport dragged = base;
-  dragged.step = 3;
-  dragged.drag_frame = 2;
-  dragged.change = ChangeClass::geometric;
-  dragged.frame = frame_name(3, 2);
-  dragged.verify = VerifyResult{12, 1};
-  report.steps.push_back(dragged);
+  report.parts = {"0-3"};
   return report;
 }
 
+std::vector<StepReport> small_steps() {
+  StepReport base;
+  base.name = "base";
+  base.change = ChangeClass::base;
+  base.frame = frame_name(base.place);
+  base.files[base.frame] = {std::string(32, 'a'), 100, 1};
+  StepReport dragged = base;
+  dragged.place = {3, 2, 2};
+  dragged.is_drag = true;
+  dragged.change = ChangeClass::geometric;
+  dragged.frame = frame_name(dragged.place);
+  dragged.edits_hash = std::string(32, 'e');
+  dragged.files = {{dragged.frame, {std::string(32, 'b'), 100, 2}}};
+  dragged.verify = VerifyResult{12, 1};
+  dragged.verify_percent = 100;
+  return {base, dragged};
+}
+
+/// As a run has it, written and read again.
+Json written(const RunReport& run) {
+  const ScratchFolder folder("report");
+  ReportFile file(folder / "report.json", report_head_json(run));
+  for (const StepReport& step : small_steps()) file.add(step_json(step));
+  file.publish();
+  EXPECT_EQ(file.entries().count, 2U);
+  EXPECT_EQ(file.entries().at(1)["frame"], "frames/0003_02.exr");
+  return parse_json(text_of(read_file(folder / "report.json")), "report.json");
+}
+
 TEST(Report, fits_the_schema_that_ships) {
-  RunReport report = small_report();
-  EXPECT_EQ(shipped_schema().violations(report_json(report)), std::vector<std::string>{});
+  RunReport report = small_run();
+  EXPECT_EQ(shipped_schema().violations(written(report)), std::vector<std::string>{});
   report.full_render_seconds = 1.5;
   report.verify_percent = 50;
   report.structures.memory_bytes = 1 << 20;
-  EXPECT_EQ(shipped_schema().violations(report_json(report)), std::vector<std::string>{});
+  EXPECT_EQ(shipped_schema().violations(written(report)), std::vector<std::string>{});
 }
 
 TEST(Report, schema_notices_what_is_missing_or_wrong) {
-  const Json sound = report_json(small_report());
+  const Json sound = written(small_run());
   const Schema schema = shipped_schema();
   for (const auto& [key, unused] : sound.items()) {
     Json broken = sound;
@@ -134,7 +157,7 @@ TEST(Report, schema_notices_what_is_missing_or_wrong) {
 }
 
 TEST(Report, has_every_name_of_version_1) {
-  const Json step = report_json(small_report())["steps"][1];
+  const Json step = written(small_run())["steps"][1];
   for (const char* name : {"step",
                            "name",
                            "class",
@@ -168,7 +191,7 @@ TEST(Report, has_every_name_of_version_1) {
   EXPECT_EQ(step["frame"], "frames/0003_02.exr");
   EXPECT_EQ(step["class"], "geometric");
   EXPECT_EQ(step["verify"]["pixels_different"], 1);
-  EXPECT_EQ(report_json(small_report())["frames"].size(), 2U);
+  EXPECT_EQ(written(small_run())["frames"].size(), 2U);
 }
 
 TEST(Report, counters_add_up) {

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <memory>
+#include <utility>
 
 namespace relook {
 namespace {
@@ -20,7 +21,23 @@ std::unique_ptr<tbb::global_control>& limit() {
   return control;
 }
 
+// What may interrupt loops is the process's, too; that it may not is a thread's.
+std::atomic<const std::atomic<int>*> interruption = nullptr;
+thread_local bool is_uninterrupted = false;
+
+const std::atomic<int>* interruption_here() { return is_uninterrupted ? nullptr : interruption.load(); }
+
 }  // namespace
+
+void let_loops_be_interrupted(const std::atomic<int>* signal) { interruption.store(signal); }
+
+Uninterrupted::Uninterrupted() : was_uninterrupted_(std::exchange(is_uninterrupted, true)) {}
+Uninterrupted::~Uninterrupted() { is_uninterrupted = was_uninterrupted_; }
+
+bool is_interrupted() {
+  const std::atomic<int>* const signal = interruption_here();
+  return signal != nullptr && signal->load(std::memory_order_relaxed) != 0;
+}
 
 void set_thread_count(std::size_t threads) {
   limit().reset();
@@ -64,9 +81,18 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
   tbb::task_group_context context(tbb::task_group_context::isolated,
                                   tbb::task_group_context::default_traits | tbb::task_group_context::fp_settings);
   Meeting before, after;
+  const std::atomic<int>* const signal = interruption_here();
+  const bool was_uninterrupted = is_uninterrupted;
   const auto run = [&](const auto& range) {
     before.take_over();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+    const bool other = std::exchange(is_uninterrupted, was_uninterrupted);  // for loops within bodies
+    const auto put_back = [&](bool* value) { *value = other; };
+    const std::unique_ptr<bool, decltype(put_back)> at_end(&is_uninterrupted, put_back);
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const int stop = signal == nullptr ? 0 : signal->load(std::memory_order_relaxed);
+      if (stop != 0) throw Interrupted{stop};
+      body(i);
+    }
     after.pass_on();
   };
   before.pass_on();

@@ -145,7 +145,7 @@ Journal read_journal(const std::filesystem::path& path) {
 }
 
 Journal parse_journal(std::string_view text, const std::filesystem::path& path) {
-  constexpr std::array<std::string_view, 2> kKeys{"relook", "steps"};
+  constexpr std::array<std::string_view, 3> kKeys{"relook", "steps", "generated"};
   constexpr std::array<std::string_view, 1> kVersions{"journal/1"};
   Journal journal;
   journal.path = path;
@@ -156,6 +156,7 @@ Journal parse_journal(std::string_view text, const std::filesystem::path& path) 
   const JsonView view(json, journal.file);
   view.only_keys(kKeys);
   (void)view.at("relook").one_of(kVersions);
+  if (view.has("generated")) (void)view.at("generated").text();
   const JsonView steps = view.at("steps");
   steps.require_array();
   for (std::size_t i = 0; i < steps.size(); ++i) journal.steps.push_back(read_step(steps.at(i), i + 1));

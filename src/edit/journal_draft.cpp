@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "base/hash.h"
+
 namespace relook {
 namespace {
 
@@ -22,10 +24,20 @@ std::string step_text(const Json& step) {
   return text + ",\"drag\":" + lines_of(step["drag"], "    ", [](const Json& entry) { return entry.dump(); }) + "}";
 }
 
+constexpr std::string_view kStart = "{\"relook\":\"journal/1\",\"generated\":\"", kEndOfHash = "\",";
+constexpr std::size_t kHashDigits = 32;
+
 }  // namespace
 
 std::string journal_text(const JournalDraft& draft) {
-  return "{\"relook\":\"journal/1\",\"steps\":" + lines_of(draft.steps, "  ", step_text) + "}\n";
+  const std::string steps = "\"steps\":" + lines_of(draft.steps, "  ", step_text) + "}\n";
+  return std::string(kStart).append(hash128(bytes_of(steps))).append(kEndOfHash).append(steps);
+}
+
+bool is_generated_journal(std::string_view text) {
+  constexpr std::size_t kSteps = kStart.size() + kHashDigits + kEndOfHash.size();
+  return text.starts_with(kStart) && text.size() > kSteps &&
+         text.substr(kStart.size(), kHashDigits) == hash128(bytes_of(text.substr(kSteps)));
 }
 
 double short_real(float value) {

@@ -18,8 +18,10 @@ struct JournalDraft {
   std::vector<std::string> warnings;
 };
 
-/// The journal's text: a line a step, an entry of a drag a line.
+/// The journal's text: a line a step, an entry of a drag a line; `generated` is the hash of what follows it.
 [[nodiscard]] std::string journal_text(const JournalDraft& draft);
+/// Whether a journal is as journal_text() made it: not written or changed by hand since.
+[[nodiscard]] bool is_generated_journal(std::string_view text);
 
 /// A number as short as it can be written so that it is read as the same float.
 [[nodiscard]] double short_real(float value);

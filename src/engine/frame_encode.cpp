@@ -51,7 +51,7 @@ std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, 
 
 ExrAttributes frame_attributes(const FrameMeta& meta) {
   ExrAttributes attributes{{"relook:scene", meta.scene_hash},
-                           {"relook:journal", meta.journal_hash},
+                           {"relook:edits", meta.edits_hash},
                            {"relook:step", meta.step},
                            {"relook:class", meta.change_class}};
   std::erase_if(attributes, [](const auto& attribute) { return attribute.second.empty(); });

@@ -15,10 +15,11 @@
 
 namespace relook {
 
-/// What a frame's header says of its origin: the string attributes relook:scene, relook:journal, relook:step and
+/// What a frame's header says of its origin: the string attributes relook:scene, relook:edits, relook:step and
 /// relook:class. Empty ones are left out.
 struct FrameMeta {
-  std::string scene_hash, journal_hash;
+  std::string scene_hash;
+  std::string edits_hash;    // of the edits up to this frame (report/edit_hashes.h)
   std::string step;          // "3", "3_01"
   std::string change_class;  // change_class_name()
 };
@@ -48,6 +49,10 @@ class FrameEncoder {
 };
 
 [[nodiscard]] Bytes encode_exr(const Frame& frame, const FrameMeta& meta, PixelFormat format);
+
+/// Whether a file is a frame as this program writes them: these attributes and no others, so that what a painting or
+/// compositing program has saved under the name of a frame is told apart.
+[[nodiscard]] bool is_own_frame(const std::filesystem::path& path);
 
 /// Reads R, G, B and A (1 if missing) of any OpenEXR image, flat, half or float. Throws InputError.
 [[nodiscard]] Frame decode_exr(const std::filesystem::path& path);

@@ -41,25 +41,21 @@ class ProxyReplay {
     for (std::size_t i = 0; i < journal.steps.size(); ++i) {
       const JournalStep& step = journal.steps[i];
       if (progress) progress(static_cast<double>(i) / static_cast<double>(journal.steps.size()));
+      const std::span<const Edit> edits = frames_of(step);
+      ChangeClass change = ChangeClass::color;
       PlannedFrame frame;
-      frame.step = static_cast<std::uint32_t>(i + 1);
       frame.name = step.name;
-      const auto edit = [&](const Edit& patch) { return replayer_.step(patch, journal.file, folder); };
-      if (step.drag.empty() && step.wedge.empty()) {
-        note(frame, edit(step.edit));
-        continue;
+      for (std::size_t number = 0; number < edits.size(); ++number) {
+        frame.place = place_of(step, static_cast<std::uint32_t>(i + 1), number);
+        note(frame, step.drag.empty() ? replayer_.step(edits[number], journal.file, folder)
+                                      : replayer_.drag(edits[number], journal.file, folder));
+        change = combined(change, frames_.back().classification.change);
       }
-      PlannedFrame last = frame;
-      last.classification.change = ChangeClass::color;
-      std::uint32_t number = 0;
-      for (const Edit& patch : frames_of(step)) {
-        frame.frame_in_step = ++number;
-        note(frame, step.drag.empty() ? edit(patch) : replayer_.drag(patch, journal.file, folder));
-        last.classification.change = combined(last.classification.change, frames_.back().classification.change);
-      }
-      StepResult result = step.drag.empty() ? edit({}) : replayer_.release();
-      result.classification = last.classification;
-      note(last, result);
+      if (!frame.place.number) continue;
+      frame.is_whole_step = true;
+      StepResult result = step.drag.empty() ? StepResult() : replayer_.release();
+      result.classification.change = change;
+      note(frame, result);
     }
     return std::move(frames_);
   }

@@ -8,6 +8,7 @@
 
 #include "edit/apply.h"
 #include "edit/journal.h"
+#include "engine/frame_place.h"
 #include "engine/image.h"
 #include "engine/render.h"
 #include "scene/state.h"
@@ -16,8 +17,8 @@ namespace relook {
 
 /// One frame of a replay, as predicted.
 struct PlannedFrame {
-  std::uint32_t step = 0;  // 1..
-  std::optional<std::uint32_t> frame_in_step;
+  FramePlace place;
+  bool is_whole_step = false;  // of a drag or wedge: the frame is its last one
   std::string name;
   Classification classification;
   std::uint64_t samples_affected = 0, pixels_changed = 0;

@@ -80,6 +80,9 @@ unsigned char display_code(float value) {
   return value > 0 ? static_cast<unsigned char>(std::min(value, 1.0F) * 255.0F + 0.5F) : std::uint8_t{0};  // NaN: 0
 }
 
+constexpr std::string_view kWriter("Software\0relook", 15);  // keyword and text of a tEXt chunk
+constexpr std::size_t kWriterOffset = 8 + 25 + 8;              // behind the signature, IHDR, and the chunk's own head
+
 constexpr std::uint32_t kBandRows = 16;
 
 }  // namespace
@@ -176,11 +179,17 @@ Bytes PreviewEncoder::png() {
   append_number(header, height_);
   for (const int value : {8, 2, 0, 0, 0}) header.push_back(static_cast<std::byte>(value));  // 8 bits, RGB
   append_chunk(png, "IHDR", header);
+  append_chunk(png, "tEXt", bytes_of(kWriter));
   constexpr std::byte kPerceptual{0};
   if (!view_) append_chunk(png, "sRGB", BytesView(&kPerceptual, 1));
   append_chunk(png, "IDAT", stream);
   append_chunk(png, "IEND", {});
   return png;
+}
+
+bool is_own_preview(std::string_view start) {
+  return start.starts_with("\x89PNG") && start.size() > kWriterOffset &&
+         start.substr(kWriterOffset).starts_with(kWriter);
 }
 
 Bytes encode_png(const Frame& frame, std::shared_ptr<const DisplayView> view) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "base/files.h"
@@ -44,6 +45,9 @@ class PreviewEncoder {
   std::vector<unsigned char> codes_;  // [height * width * 3], row 0 on top
   std::vector<Band> bands_;
 };
+
+/// Whether a PNG file with this start, 64 bytes at least, is one that this program has written.
+[[nodiscard]] bool is_own_preview(std::string_view start);
 
 [[nodiscard]] Bytes encode_png(const Frame& frame, std::shared_ptr<const DisplayView> view = nullptr);
 

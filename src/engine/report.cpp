@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <fstream>
 
+#include "base/error.h"
+
 namespace relook {
 namespace {
 
@@ -21,16 +23,6 @@ std::string cpu_model() {
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "unknown";
-}
-
-std::string numbered(const char* folder, const char* suffix, std::uint32_t step,
-                     std::optional<std::uint32_t> frame_in_step) {
-  char name[64];
-  if (frame_in_step)
-    std::snprintf(name, sizeof name, "%s/%04u_%02u%s", folder, step, *frame_in_step, suffix);
-  else
-    std::snprintf(name, sizeof name, "%s/%04u%s", folder, step, suffix);
-  return name;
 }
 
 Json seconds_json(const Seconds& seconds) {
@@ -67,20 +59,37 @@ Json range_json(const std::optional<StepRange>& range) {
 
 Json regions_json(const RegionCounters& regions) { return {{"visited", regions.visited}, {"culled", regions.culled}}; }
 
+Json files_json(const std::map<std::string, FileStamp>& files) {
+  Json json = Json::object();
+  for (const auto& [name, stamp] : files)
+    json[name] = {{"hash", stamp.hash}, {"bytes", stamp.bytes}, {"modified", stamp.modified}};
+  return json;
+}
+
+/// The number of a frame in a drag, or in a wedge.
+Json number_json(const StepReport& step, bool of_drag) {
+  const bool has_number = step.place.number && !step.is_whole_step && step.is_drag == of_drag;
+  return has_number ? Json(*step.place.number) : Json(nullptr);
+}
+
 }  // namespace
 
 Json step_json(const StepReport& step) {
   const Counters& counters = step.counters;
+  const auto frame = step.files.find(step.frame);
   return {
-      {"step", step.step},
+      {"step", step.place.step},
       {"name", step.name},
       {"class", change_class_name(step.change)},
       {"reasons", step.reasons},
-      {"drag_frame", or_null(step.drag_frame)},
-      {"wedge_frame", or_null(step.wedge_frame)},
+      {"drag_frame", number_json(step, true)},
+      {"wedge_frame", number_json(step, false)},
       {"frame", step.frame},
-      {"frame_hash", step.frame_hash},
+      {"frame_hash", frame == step.files.end() ? "" : frame->second.hash},
       {"preview", step.preview},
+      {"edits", step.edits_hash},
+      {"files", files_json(step.files)},
+      {"command", step.command},
       {"samples_total", counters.samples_total},
       {"samples_affected", counters.samples_affected},
       {"pixels_changed", counters.pixels_changed},
@@ -102,6 +111,8 @@ Json step_json(const StepReport& step) {
       {"reloaded", moves_json(counters.reloaded)},
       {"peak_rss", step.peak_rss_bytes},
       {"resumed", false},
+      {"overlays", step.has_overlays},
+      {"verify_percent", or_null(step.verify_percent)},
       {"verify", verify_json(step.verify)}};
 }
 
@@ -132,23 +143,6 @@ ChangeClass combined(ChangeClass a, ChangeClass b) {
   return std::max(a, b);
 }
 
-std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step) {
-  return numbered("frames", ".exr", step, frame_in_step);
-}
-
-std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step) {
-  return numbered("previews", ".png", step, frame_in_step);
-}
-
-std::string step_label(std::uint32_t step, std::optional<std::uint32_t> frame_in_step) {
-  char label[32];
-  if (frame_in_step)
-    std::snprintf(label, sizeof label, "%u_%02u", step, *frame_in_step);
-  else
-    std::snprintf(label, sizeof label, "%u", step);
-  return label;
-}
-
 std::uint64_t peak_rss_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -162,25 +156,17 @@ std::map<std::string, double> CacheSizes::per_sample() const {
   return shares;
 }
 
-Json report_json(const RunReport& report) {
-  Json steps = Json::array(), frames = Json::object();
-  for (const Json& entry : report.resumed) {
-    steps.push_back(entry);
-    steps.back()["resumed"] = true;
-    frames[entry.at("frame").get<std::string>()] = entry.at("frame_hash");
-  }
-  for (const StepReport& step : report.steps) {
-    steps.push_back(step_json(step));
-    frames[step.frame] = step.frame_hash;
-  }
+Json report_head_json(const RunReport& report) {
   Json cache_bytes = report.cache.bytes_by_part;
   cache_bytes["total"] = report.cache.total_bytes;
   return {{"relook", "report/" + std::to_string(kReportVersion)},
           {"version", kReportVersion},
           {"program", program_version()},
-          {"scene", {{"file", report.scene}, {"hash", report.scene_hash}}},
-          {"cache", report.cache_folder},
-          {"journal", {{"file", report.journal}, {"hash", report.journal_hash}}},
+          {"scene", {{"file", printable(report.scene)}, {"hash", report.scene_hash}}},
+          {"cache", printable(report.cache_folder)},
+          {"journal", {{"file", printable(report.journal)}, {"hash", report.journal_hash}}},
+          {"source", report.source},
+          {"places", report.places},
           {"camera", report.camera.name},
           {"resolution", {report.camera.width, report.camera.height}},
           {"samples", report.view.samples},
@@ -190,10 +176,9 @@ Json report_json(const RunReport& report) {
           {"cache_bytes", std::move(cache_bytes)},
           {"cache_bytes_per_sample", report.cache.per_sample()},
           {"cache_damage", report.cache_damage},
-          {"frames", std::move(frames)},
           {"interrupted", report.interrupted},
-          {"resumed", {{"frames", report.resumed.size()}, {"seconds", report.resume_seconds}}},
-          {"steps", std::move(steps)}};
+          {"parts", report.parts},
+          {"resumed", {{"frames", report.resumed_frames}, {"seconds", report.resume_seconds}}}};
 }
 
 }  // namespace relook

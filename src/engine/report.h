@@ -11,6 +11,7 @@
 #include "base/json.h"
 #include "edit/apply.h"
 #include "engine/counters.h"
+#include "engine/frame_place.h"
 #include "engine/image.h"
 #include "scene/camera.h"
 
@@ -26,15 +27,28 @@ struct VerifyResult {
   std::uint64_t pixels_compared = 0, pixels_different = 0;
 };
 
+/// A file of a run as it was written.
+struct FileStamp {
+  std::string hash;  // XXH3-128
+  std::uint64_t bytes = 0;
+  std::int64_t modified = 0;  // nanoseconds since the epoch: with `bytes`, tells most changes without reading the file
+};
+
+/// A frame, or a drag or wedge as a whole: that has no frame of its own and names its last one.
 struct StepReport {
-  std::uint32_t step = 0;  // 0: before any edit
+  FramePlace place;
+  bool is_whole_step = false;  // of a drag or wedge
   std::string name;
   ChangeClass change = ChangeClass::base;
   std::vector<std::string> reasons;
-  std::optional<std::uint32_t> drag_frame;   // 1.. for the intermediate frames of a drag
-  std::optional<std::uint32_t> wedge_frame;  // 1.. for the values of a wedge
-  [[nodiscard]] std::optional<std::uint32_t> frame_in_step() const { return drag_frame ? drag_frame : wedge_frame; }
-  std::string frame, frame_hash, preview;  // files relative to the run directory; XXH3-128 of the frame's bytes
+  bool is_drag = false;        // what numbered frames are of
+  std::string frame, preview;  // files relative to the run folder
+  std::string edits_hash;      // see report/edit_hashes.h
+  bool has_overlays = false;   // they were asked for
+  std::optional<double> verify_percent;
+  std::string command;  // that has done it: a number of its own
+  std::map<std::string, FileStamp>
+      files;  // of the frame, its preview and its overlays, by name; known once they are written
   Counters counters;
   Seconds seconds;
   Resident resident;
@@ -66,10 +80,13 @@ struct CacheSizes {
   [[nodiscard]] std::map<std::string, double> per_sample() const;
 };
 
+/// What is said of a run as a whole.
 struct RunReport {
   std::string scene, scene_hash;      // file as named when the cache was made
   std::string cache_folder;           // as named by the user
   std::string journal, journal_hash;  // file as named by the user
+  Json source;                        // what all frames of the run have in common (report/run_source.h)
+  Json places;                        // where cache and journal are (report/places.h)
   Camera camera;
   ViewOptions view;
   StructureOptions structures;
@@ -81,26 +98,21 @@ struct RunReport {
   std::optional<double> full_render_seconds;
   CacheSizes cache;
   std::vector<std::string> cache_damage;  // sentences: what was damaged or missing and traced again
-  bool interrupted = false;               // ended by a signal or for want of memory: later steps are missing
-  std::vector<Json>
-      resumed;  // step_json() of frames that an earlier run of the same inputs has finished; before `steps`
-  double resume_seconds = 0;  // to get to where that run was
-  std::vector<StepReport> steps;
+  bool interrupted = false;               // frames that were asked for are missing
+  std::vector<std::string> parts;         // the ranges of steps asked for so far: "1-5"
+  std::size_t frames = 0;                 // that are there
+  std::size_t resumed_frames = 0;         // done by other commands
+  double resume_seconds = 0;              // to get to where frames were missing
 };
 
-[[nodiscard]] Json report_json(const RunReport& report);
+/// All of report.json but `steps` and `frames`.
+[[nodiscard]] Json report_head_json(const RunReport& report);
 /// Its entry of `steps`, and its `options`.
 [[nodiscard]] Json step_json(const StepReport& step);
 [[nodiscard]] Json options_json(const RunReport& report);
 
 /// The class of several edits together, by the rule of classify(): that of a drag's release.
 [[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
-
-/// "frames/0003.exr", "frames/0003_01.exr".
-[[nodiscard]] std::string frame_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step);
-[[nodiscard]] std::string preview_name(std::uint32_t step, std::optional<std::uint32_t> frame_in_step);
-/// "3", "3_01".
-[[nodiscard]] std::string step_label(std::uint32_t step, std::optional<std::uint32_t> frame_in_step);
 
 /// Largest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_rss_bytes();

@@ -43,7 +43,8 @@ std::optional<std::uint32_t> frame_number(const JsonView& step, std::string_view
 RunSteps::Step read_step(const JsonView& view) {
   RunSteps::Step step;
   const std::optional<std::uint32_t> drag = frame_number(view, "drag_frame"), wedge = frame_number(view, "wedge_frame");
-  step.label = step_label(static_cast<std::uint32_t>(view.at("step").integer(0, UINT32_MAX)), drag ? drag : wedge);
+  const auto number = static_cast<std::uint32_t>(view.at("step").integer(0, UINT32_MAX));
+  step.label = step_label({number, drag ? drag : wedge, (drag ? drag : wedge).value_or(0)});
   step.name = view.at("name").text();
   step.change_class = view.at("class").text();
   for (std::size_t i = 0; i < kMeasures.size(); ++i)

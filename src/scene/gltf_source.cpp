@@ -243,6 +243,22 @@ std::vector<EncodedImage> load_images(const GltfSource& source,
   return images;
 }
 
+std::vector<std::filesystem::path> external_files(const GltfSource& source) {
+  std::vector<std::filesystem::path> paths;
+  for (const char* section : {"buffers", "images"}) {
+    if (!source.json.contains(section) || !source.json[section].is_array()) continue;
+    for (const Json& entry : source.json[section]) {
+      const bool has_uri = entry.is_object() && entry.contains("uri") && entry["uri"].is_string();
+      if (!has_uri || is_data_uri(entry["uri"].get_ref<const std::string&>())) continue;
+      try {
+        paths.push_back(external_path(source, JsonView(entry, source.file), entry["uri"].get<std::string>()));
+      } catch (const InputError&) {  // who reads the scene says so
+      }
+    }
+  }
+  return paths;
+}
+
 std::string percent_decoded(std::string_view uri, std::string_view file, std::string_view where) {
   std::string decoded;
   for (std::size_t i = 0; i < uri.size(); ++i) {

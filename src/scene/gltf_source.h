@@ -34,6 +34,9 @@ struct GltfSource {
 [[nodiscard]] std::vector<EncodedImage> load_images(const GltfSource& source,
                                                     const std::vector<std::vector<unsigned char>>& buffers);
 
+/// The files that a scene's buffers and images name, as far as they are there and lie where they may.
+[[nodiscard]] std::vector<std::filesystem::path> external_files(const GltfSource& source);
+
 /// "%20" to " ". Throws InputError{file, where, ...} on a bad escape.
 [[nodiscard]] std::string percent_decoded(std::string_view uri, std::string_view file, std::string_view where);
 

@@ -38,6 +38,7 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   ImportedGltf imported;
   imported.file = source.file;
   check_document(source.json, source.file, imported.warnings);
+  imported.files = external_files(source);
   auto buffers = load_buffers(source);
   imported.images = load_images(source, buffers);
   const GltfModel model = parse_model(source.json, std::move(buffers), source.file);

@@ -20,6 +20,7 @@ struct ImportedGltf {
   std::vector<EncodedImage> images;     // per glTF image; name not yet set
   /// Per glTF node: local matrices of EXT_mesh_gpu_instancing, empty without the extension.
   std::vector<std::vector<Transform>> instances;
+  std::vector<std::filesystem::path> files;  // that the scene file names
   std::vector<std::string> warnings;    // optional extensions ignored, skins left unposed, ...
 };
 

@@ -1,0 +1,195 @@
+#include "outputs.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+#include "cache/cache.h"
+#include "report/own_file.h"
+#include "report/progress_file.h"
+#include "report/report_file.h"
+#include "shim_tmp.h"
+
+namespace relook {
+namespace {
+
+struct Output {
+  std::filesystem::path path;
+  std::string_view option;
+  std::optional<OwnKind> kind;  // none: a folder
+};
+struct Input {
+  std::filesystem::path path;
+  std::string_view what;
+};
+
+std::vector<Output> outputs_of(const Arguments& arguments) {
+  std::vector<Output> outputs;
+  const auto add = [&](const std::filesystem::path& path, std::string_view option, std::optional<OwnKind> kind) {
+    if (!path.empty()) outputs.push_back({path, option, kind});
+  };
+  switch (arguments.verb) {
+    case Verb::render:
+      add(arguments.output, "-o", is_preview_name(arguments.output) ? OwnKind::preview : OwnKind::frame);
+      break;
+    case Verb::journal:
+      add(arguments.output, "-o", OwnKind::journal);
+      break;
+    case Verb::compare:
+      add(arguments.output, "-o", std::nullopt);
+      if (!arguments.output.empty()) {
+        add(std::filesystem::path(arguments.output) / "compare.json", "-o", OwnKind::comparison);
+        add(std::filesystem::path(arguments.output) / "compare.html", "-o", OwnKind::page);
+      }
+      add(arguments.json_file, "--json", OwnKind::comparison);
+      add(arguments.html, "--html", OwnKind::page);
+      break;
+    case Verb::plan:
+      add(arguments.json_file, "--json", OwnKind::plan);
+      break;
+    case Verb::replay:
+      add(arguments.output, "-o", std::nullopt);
+      add(arguments.access_log, "--access-log", OwnKind::access_log);
+      break;
+    default:
+      add(arguments.output, "-o", std::nullopt);
+  }
+  add(arguments.trace, "--trace", OwnKind::trace);
+  return outputs;
+}
+
+std::vector<Input> inputs_of(const Arguments& arguments) {
+  std::vector<Input> inputs;
+  const auto add = [&](const std::string& path, std::string_view what) {
+    if (!path.empty() && path != "-") inputs.push_back({path, what});
+  };
+  const bool has_one = arguments.verb == Verb::blame ||
+                       (arguments.verb == Verb::journal && arguments.journal_source != JournalSource::diff);
+  for (const std::string& input : arguments.inputs) {
+    add(input, "an input");
+    if (has_one) break;
+  }
+  add(arguments.journal, "the journal");
+  add(arguments.view.look_patch, "the patch of --look");
+  add(arguments.scene, "the scene");
+  add(arguments.cache, "the cache");
+  return inputs;
+}
+
+/// The file or folder itself, whatever it is called; what is not there yet by the name it would have.
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::path full = std::filesystem::absolute(path, ignored);
+  return std::filesystem::weakly_canonical(full.has_filename() ? full : full.parent_path(), ignored);
+}
+
+bool are_one(const std::filesystem::path& a, const std::filesystem::path& b) {
+  struct stat first {
+  }, second{};
+  const bool has_first = ::stat(a.c_str(), &first) == 0, has_second = ::stat(b.c_str(), &second) == 0;
+  if (has_first && has_second) return first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+  return resolved(a) == resolved(b);
+}
+
+bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  const std::filesystem::path inner = resolved(path), outer = resolved(folder);
+  const auto [end, rest] = std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end());
+  return end == outer.end() && rest != inner.end();
+}
+
+/// The run that a file is part of: RUN/report.json, RUN/frames/0003.exr; "" if of none.
+std::filesystem::path run_of(const std::filesystem::path& file) {
+  const std::filesystem::path full = resolved(file);
+  for (const std::filesystem::path& folder : {full.parent_path(), full.parent_path().parent_path()})
+    if (is_own_file(folder / kReportName, OwnKind::report) || is_own_file(folder / kProgressName, OwnKind::progress))
+      if (folder == full.parent_path().parent_path() || full.filename() == kReportName ||
+          full.filename() == "report.html" || full.filename() == kProgressName)
+        return folder;
+  return {};
+}
+
+/// Whether an output is a file in a folder of inputs, and no earlier output there.
+bool is_read_from(const Output& output, const std::filesystem::path& folder) {
+  std::error_code error;
+  return output.kind && std::filesystem::is_directory(folder, error) && std::filesystem::exists(output.path, error) &&
+         lies_in(output.path, folder) && !is_own_file(output.path, *output.kind);
+}
+
+[[noreturn]] void refuse(const Output& output, const std::string& why) {
+  throw UsageError(output.path.string(), std::string(output.option) + ": " + why);
+}
+
+void check_file(const Output& output, bool overwrites) {
+  std::error_code error;
+  const auto status = std::filesystem::status(output.path, error);
+  const auto name = std::filesystem::symlink_status(output.path, error);
+  if (name.type() == std::filesystem::file_type::not_found) return;
+  if (status.type() == std::filesystem::file_type::not_found) refuse(output, "is a link to nothing");
+  if (status.type() == std::filesystem::file_type::directory) refuse(output, "is a folder");
+  if (status.type() != std::filesystem::file_type::regular) refuse(output, "is no regular file");
+  if (overwrites) return;
+  if (!is_own_file(output.path, *output.kind))
+    refuse(output,
+           "is there and not " + std::string(own_kind_name(*output.kind)) + " of relook; --overwrite replaces it");
+  if (const std::filesystem::path run = run_of(output.path); !run.empty())
+    refuse(output, "is part of the run " + run.string() + "; --overwrite replaces it");
+}
+
+/// What a run has for itself in its folder.
+bool is_reserved(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  constexpr std::array<std::string_view, 7> kNames{kReportName, "report.html", kProgressName, "frames",
+                                                   "previews",  "overlays",    "pixels"};
+  const std::string first = resolved(path).lexically_relative(resolved(folder)).begin()->string();
+  return std::ranges::find(kNames, first) != kNames.end();
+}
+
+void check_together(const std::vector<Output>& outputs, Verb verb) {
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      const Output &one = outputs[i], &other = outputs[k];
+      if (k < i && are_one(one.path, other.path))
+        refuse(one, "is the output of " + std::string(other.option) + ", too");
+      if (i == k || other.kind || !lies_in(one.path, other.path)) continue;
+      if (verb == Verb::preprocess) refuse(one, "lies in the cache that is to be written");
+      if (verb == Verb::replay && is_reserved(one.path, other.path)) refuse(one, "is a file of the run");
+    }
+}
+
+}  // namespace
+
+bool is_preview_name(const std::filesystem::path& output) {
+  std::string suffix = output.extension().string();
+  std::ranges::transform(suffix, suffix.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
+  if (suffix != ".exr" && suffix != ".png")
+    throw UsageError(output.string(), "-o: a frame is called .exr, or .png for a preview");
+  return suffix == ".png";
+}
+
+void check_outputs(const Arguments& arguments) {
+  const std::vector<Output> outputs = outputs_of(arguments);
+  for (const Input& input : inputs_of(arguments)) require_not_outputs(arguments, std::span(&input.path, 1), input.what);
+  for (const Output& output : outputs) {
+    const std::optional<std::filesystem::path> cache = enclosing_cache(resolved(output.path));
+    const bool is_cache_itself =
+        cache && arguments.verb == Verb::preprocess && !output.kind && are_one(*cache, output.path);
+    if (cache && !is_cache_itself) refuse(output, "lies in the cache " + cache->string());
+    if (output.kind) check_file(output, arguments.overwrite);
+  }
+  check_together(outputs, arguments.verb);
+}
+
+void require_not_outputs(const Arguments& arguments, std::span<const std::filesystem::path> inputs,
+                         std::string_view what) {
+  for (const Output& output : outputs_of(arguments))
+    for (const std::filesystem::path& input : inputs)
+      if (are_one(output.path, input) || is_read_from(output, input))
+        refuse(output, "is " + std::string(what) + ": an input is never replaced");
+}
+
+}  // namespace relook

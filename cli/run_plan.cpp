@@ -1,0 +1,335 @@
+#include "run_plan.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/hash.h"
+#include "cache/cache.h"
+#include "report/own_file.h"
+#include "report/progress_file.h"
+#include "report/report_file.h"
+#include "report/run_source.h"
+
+namespace relook {
+namespace {
+
+struct RunPart {
+  std::string_view folder, suffix;
+  OwnKind kind;
+};
+constexpr std::array<RunPart, 4> kParts{{{"frames", ".exr", OwnKind::frame},
+                                         {"previews", ".png", OwnKind::preview},
+                                         {"overlays", ".png", OwnKind::preview},
+                                         {"pixels", ".js", OwnKind::page_data}}};
+constexpr std::array<std::pair<std::string_view, OwnKind>, 3> kFiles{
+    {{kReportName, OwnKind::report}, {"report.html", OwnKind::page}, {kProgressName, OwnKind::progress}}};
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::symlink_status(path, error).type() != std::filesystem::file_type::not_found;
+}
+
+/// The entries of a folder that are not the system's, in order.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> entries;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (!is_dropping(entry.path())) entries.push_back(entry.path());
+  if (error && is_there(folder)) throw IoError(folder.string(), "cannot be read: " + error.message());
+  std::ranges::sort(entries);
+  return entries;
+}
+
+/// The name that write_file() was writing when it was killed: of ".0003.exr.4711.0.tmp" "0003.exr"; "" of all others.
+std::string unfinished_name(const std::filesystem::path& path) {
+  std::string name = path.filename().string();
+  if (!name.starts_with(".") || !name.ends_with(".tmp")) return "";
+  name = name.substr(1, name.size() - 5);
+  for (int numbers = 0; numbers < 2; ++numbers) {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string::npos || dot + 1 == name.size() ||
+        name.find_first_not_of("0123456789", dot + 1) != std::string::npos)
+      return "";
+    name.resize(dot);
+  }
+  return name;
+}
+
+/// The step that the file of a frame is of: 3 of "0003_01.exr".
+std::optional<std::uint32_t> step_of_file(const std::string& name) {
+  std::uint32_t step = 0;
+  const auto read = std::from_chars(name.data(), name.data() + name.size(), step);
+  if (read.ec != std::errc() || read.ptr == name.data()) return std::nullopt;
+  return step;
+}
+
+void remove_file(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (error) throw IoError(path.string(), "cannot be removed: " + error.message());
+}
+
+/// Whether a file is as it was when it was noted.
+bool is_sound(const std::filesystem::path& path, const Json& stamp) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
+  if (static_cast<std::uint64_t>(status.st_size) != stamp.at("bytes").get<std::uint64_t>()) return false;
+  const auto modified = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+  return modified == stamp.at("modified").get<std::int64_t>() ||
+         hash128(read_file(path)) == stamp.at("hash").get<std::string>();
+}
+
+}  // namespace
+
+FileStamp stamp_of(const std::filesystem::path& path, std::string hash) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0)
+    throw IoError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
+  return {std::move(hash), static_cast<std::uint64_t>(status.st_size),
+          std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
+}
+
+RunPlan::RunPlan(const Arguments& arguments, const Journal& journal, std::filesystem::path folder, Json source)
+    : arguments_(arguments),
+      journal_(journal),
+      folder_(std::move(folder)),
+      source_(std::move(source)),
+      hashes_(journal) {
+  const auto steps = static_cast<std::uint32_t>(journal.steps.size());
+  first_ = arguments.steps ? arguments.steps->first : 0;
+  last_ = arguments.steps ? arguments.steps->last.value_or(steps) : steps;
+  refresh();
+}
+
+void RunPlan::refresh() {
+  ledger_.reset();
+  replaces_all_ = false;
+  look_into_folder();
+  find_kept();
+}
+
+void RunPlan::look_into_folder() {
+  if (!is_there(folder_)) return;
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder_, error)) throw UsageError(folder_.string(), "is there and is no folder");
+  const std::vector<std::filesystem::path> entries = entries_of(folder_);
+  if (entries.empty()) return;
+  for (const auto& [name, kind] : kFiles)
+    if (is_there(folder_ / name) && !is_own_file(folder_ / name, kind))
+      throw UsageError((folder_ / name).string(), "is there and not of relook: not replaced");
+  ledger_.emplace(folder_);
+  if (ledger_->is_run()) return judge_run();
+  Json manifest;
+  const bool is_cache = read_manifest(folder_, manifest).fault == CacheFault::none;
+  throw UsageError(folder_.string(), is_cache ? "holds a cache: not replaced by a run"
+                                              : "is there and is no run: \"" +
+                                                    printable(entries.front().filename().string()) +
+                                                    "\" is not relook's; nothing is replaced");
+}
+
+/// What may stay and what not.
+void RunPlan::judge_run() {
+  const bool has_nothing = ledger_->source().is_null() && ledger_->notes().empty() && !is_there(folder_ / kReportName);
+  if (has_nothing) return;  // killed as it began
+  std::optional<std::string> other = difference_of_sources(ledger_->source(), source_);
+  replaces_all_ = other.has_value();
+  if (!other) other = other_journal();
+  if (!other) return;
+  if (!arguments_.overwrite) throw UsageError(folder_.string(), "holds " + *other + "; --overwrite replaces it");
+  if (replaces_all_) require_known_files();
+}
+
+const std::string* RunPlan::expected_edits(const LedgerKey& key) const {
+  const auto& [step, number] = key;
+  if (step > journal_.steps.size()) return nullptr;
+  if (step == 0) return number == kWholeStep ? &hashes_.at(0, 0) : nullptr;
+  const JournalStep& entry = journal_.steps[step - 1];
+  if (number == kWholeStep) return &hashes_.after(step);
+  const bool is_numbered = !entry.drag.empty() || !entry.wedge.empty();
+  return is_numbered && number <= frames_of(entry).size() ? &hashes_.at(step, number - 1) : nullptr;
+}
+
+std::optional<std::string> RunPlan::other_journal() const {
+  for (const auto& [key, note] : ledger_->notes()) {
+    if (is_of_journal(key, note)) continue;
+    const std::string* expected = expected_edits(key);
+    const Json entry = ledger_->entry(note);
+    const std::string name = printable(entry.value("name", "")), frame = entry.value("frame", "");
+    if (expected != nullptr && key.second == kWholeStep && frame.find('_') != std::string::npos)
+      continue;  // a wedge or drag with more frames than before: only its own entry is another
+    return "a run of another journal (its step " + std::to_string(key.first) + ", \"" + name + "\", is " +
+           (expected == nullptr ? "not in " : "not that of ") + printable(journal_.file) + ")";
+  }
+  return std::nullopt;
+}
+
+/// Before a whole run is replaced: every file in its folder is one that relook has written.
+void RunPlan::require_known_files() const {
+  const auto refuse = [](const std::filesystem::path& path) {
+    throw UsageError(path.string(), "is not relook's: a run with other files in its folder is not replaced");
+  };
+  for (const std::filesystem::path& path : entries_of(folder_)) {
+    const std::string name = path.filename().string();
+    if (std::ranges::find(kFiles, name, [](const auto& file) { return file.first; }) != kFiles.end()) continue;
+    const auto part = std::ranges::find(kParts, name, &RunPart::folder);
+    std::error_code error;
+    if (part == kParts.end() || !std::filesystem::is_directory(path, error)) {
+      if (unfinished_name(path).empty()) refuse(path);
+      continue;
+    }
+    for (const std::filesystem::path& file : entries_of(path))
+      if (unfinished_name(file).empty() && !(file.extension() == part->suffix && is_own_file(file, part->kind)))
+        refuse(file);
+  }
+}
+
+bool RunPlan::is_kept(const Json& entry) const {
+  if (arguments_.fresh) return false;
+  try {
+    if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
+    if (arguments_.verify_percent && entry.at("verify_percent").is_null()) return false;
+    if (arguments_.verify_percent && entry.at("verify_percent").get<double>() < *arguments_.verify_percent)
+      return false;
+    for (const auto& [name, stamp] : entry.at("files").items())
+      if (!is_sound(folder_ / name, stamp)) return false;
+    return entry.at("files").contains(entry.at("frame").get<std::string>());
+  } catch (const Json::exception&) {
+    return false;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void RunPlan::require_free(const std::string& name) const {
+  const std::filesystem::path path = folder_ / name;
+  if (!is_there(path)) return;
+  const auto part = std::ranges::find(kParts, name.substr(0, name.find('/')), &RunPart::folder);
+  if (!is_own_file(path, part->kind))
+    throw UsageError(path.string(), "is where a file of the run is to go, and not of relook: not replaced");
+}
+
+void RunPlan::find_kept() {
+  frames_ = kept_frames_ = 0;
+  pixels_different_ = 0;
+  kept_.clear();
+  bool has_all_in_report = ledger_.has_value();
+  for (std::uint32_t step = first_; step <= last_; ++step) {
+    const std::size_t count = frames_in(step);
+    std::vector<bool>& kept = kept_.emplace_back(count, false);
+    frames_ += count;
+    for (std::size_t frame = 0; frame < count; ++frame) {
+      const FramePlace here = place(step, frame);
+      const RunLedger::Note* note = ledger_ && !replaces_all_ ? ledger_->find(key_of(step, frame)) : nullptr;
+      if (note != nullptr && note->edits == hashes_.at(step, frame)) {
+        const Json entry = ledger_->entry(*note);
+        kept[frame] = is_kept(entry) && entry.at("frame") == frame_name(here);
+        if (kept[frame] && entry.at("verify").is_object())
+          pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
+        has_all_in_report = has_all_in_report && note->is_in_report;
+      }
+      kept_frames_ += kept[frame] ? 1 : 0;
+      if (kept[frame] || replaces_all_) continue;
+      require_free(frame_name(here));
+      require_free(preview_name(here));
+    }
+  }
+  const bool wants_page = arguments_.report == ReportKind::html && !is_there(folder_ / "report.html");
+  const bool lacks_baseline = arguments_.baseline && ledger_ && ledger_->head().is_object() &&
+                              ledger_->head().value("full_render_seconds", Json()).is_null();
+  is_complete_ = kept_frames_ == frames_ && !wants_page && !lacks_baseline &&
+                 (arguments_.report == ReportKind::none ||
+                  (has_all_in_report && ledger_->head().is_object() && !ledger_->head().value("interrupted", true)));
+}
+
+std::size_t RunPlan::frames_in(std::uint32_t step) const {
+  return step == 0 ? 1 : frames_of(journal_.steps[step - 1]).size();
+}
+
+LedgerKey RunPlan::key_of(std::uint32_t step, std::size_t frame) const {
+  return {step, place(step, frame).number.value_or(kWholeStep)};
+}
+
+FramePlace RunPlan::place(std::uint32_t step, std::size_t frame) const {
+  return step == 0 ? FramePlace() : place_of(journal_.steps[step - 1], step, frame);
+}
+
+bool RunPlan::is_of_journal(const LedgerKey& key, const RunLedger::Note& note) const {
+  const std::string* expected = expected_edits(key);
+  return expected != nullptr && *expected == note.edits;
+}
+
+bool RunPlan::is_frame(const LedgerKey& key) const {
+  const auto& [step, number] = key;
+  return number != kWholeStep || step == 0 || step > journal_.steps.size() ||
+         (journal_.steps[step - 1].drag.empty() && journal_.steps[step - 1].wedge.empty());
+}
+
+Json RunPlan::kept_entry(std::uint32_t step, std::size_t frame) const {
+  return ledger_->entry(*ledger_->find(key_of(step, frame)));
+}
+
+bool RunPlan::keeps_whole_step(std::uint32_t step) const {
+  const RunLedger::Note* note = ledger_ && !replaces_all_ ? ledger_->find({step, kWholeStep}) : nullptr;
+  return note != nullptr && note->edits == hashes_.after(step);
+}
+
+/// A hundredth frame gives all frames of its step another digit.
+bool RunPlan::may_be_renamed(const LedgerKey& key) const {
+  constexpr std::size_t kThreeDigits = 100;
+  return frames_of(journal_.steps[key.first - 1]).size() >= kThreeDigits;
+}
+
+bool RunPlan::has_its_name(const LedgerKey& key, const Json& entry) const {
+  return key.second == kWholeStep || entry.value("frame", "") == frame_name(place(key.first, key.second - 1));
+}
+
+void RunPlan::clear_way(const std::function<bool()>& locks_all) const {
+  if (replaces_all_) {
+    if (!locks_all()) throw BusyError(folder_.string(), "another replay is writing the run that is to be replaced");
+    for (const RunPart& part : kParts) {
+      for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) remove_file(file);
+      std::error_code not_empty;
+      std::filesystem::remove(folder_ / part.folder, not_empty);
+    }
+    for (const std::filesystem::path& path : entries_of(folder_))
+      if (path.filename() != kProgressName && !unfinished_name(path).empty()) remove_file(path);
+    for (const std::string_view name : {kReportName, std::string_view("report.html")})
+      if (is_there(folder_ / name)) remove_file(folder_ / name);
+    return;
+  }
+  remove_leftovers();
+  if (!ledger_) return;
+  // Frames of another journal, in steps that nobody else is at: this command's, and those that the journal lacks.
+  for (const auto& [key, note] : ledger_->notes()) {
+    const bool is_ours = key.first > journal_.steps.size() || (key.first >= first_ && key.first <= last_);
+    const bool is_same = is_of_journal(key, note);
+    if (!is_ours || (is_same && (key.second == kWholeStep || !may_be_renamed(key)))) continue;
+    const Json entry = ledger_->entry(note);
+    if (!entry.contains("files") || (is_same && has_its_name(key, entry))) continue;
+    for (const auto& [name, stamp] : entry["files"].items()) {
+      const auto part = std::ranges::find(kParts, name.substr(0, name.find('/')), &RunPart::folder);
+      const bool is_plain = part != kParts.end() && std::ranges::count(name, '/') == 1;
+      if (is_plain && is_own_file(folder_ / name, part->kind)) remove_file(folder_ / name);
+    }
+  }
+}
+
+/// Temporary files of commands that were killed at the steps that are locked now, or while they wrote the report.
+void RunPlan::remove_leftovers() const {
+  for (const RunPart& part : kParts)
+    for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) {
+      const std::optional<std::uint32_t> step = step_of_file(unfinished_name(file));
+      if (step && *step >= first_ && *step <= last_) remove_file(file);
+    }
+  for (const std::filesystem::path& file : entries_of(folder_))
+    if (unfinished_name(file).starts_with("report.")) remove_file(file);
+}
+
+}  // namespace relook

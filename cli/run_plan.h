@@ -1,0 +1,87 @@
+// What a replay has to do in one run folder, found before anything is written: which frames are there already, made by
+// whatever command from the same cache and the same edits, and whether anything else is in the way.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arguments.h"
+#include "edit/journal.h"
+#include "report/edit_hashes.h"
+#include "report/run_ledger.h"
+
+namespace relook {
+
+class RunPlan {
+ public:
+  /// `source`: run_source() of what is to be done. Throws UsageError when something else is at `folder`, or at the name
+  /// of a file to be written: a run of another source or journal (unless --overwrite is given), or anything that relook
+  /// has not written.
+  RunPlan(const Arguments& arguments, const Journal& journal, std::filesystem::path folder, Json source);
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  [[nodiscard]] const Json& source() const { return source_; }
+  [[nodiscard]] const EditHashes& hashes() const { return hashes_; }
+  /// The steps whose frames are asked for; 0 is the frame before any.
+  [[nodiscard]] std::uint32_t first_step() const { return first_; }
+  [[nodiscard]] std::uint32_t last_step() const { return last_; }
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  [[nodiscard]] std::size_t kept_frames() const { return kept_frames_; }
+  /// Whether frame `frame` (from 0) of a step is there; then its entry is.
+  [[nodiscard]] bool keeps(std::uint32_t step, std::size_t frame) const { return kept_[step - first_][frame]; }
+  [[nodiscard]] Json kept_entry(std::uint32_t step, std::size_t frame) const;
+  /// Whether there is an entry for a drag or wedge as a whole.
+  [[nodiscard]] bool keeps_whole_step(std::uint32_t step) const;
+  /// Of all frames kept, what --verify found.
+  [[nodiscard]] std::uint64_t pixels_different() const { return pixels_different_; }
+  /// Whether there is nothing to do: all frames, and the report that is asked for, are there.
+  [[nodiscard]] bool is_complete() const { return is_complete_; }
+  /// Reads the folder again, since others may have gone on.
+  void refresh();
+
+  /// Removes what --overwrite replaces and killed commands have left, by name. To be called with the steps locked;
+  /// `locks_all`: sees to it that nobody else is at any step of the run, false if somebody is: then a run of another
+  /// source is not replaced (BusyError).
+  void clear_way(const std::function<bool()>& locks_all) const;
+
+  [[nodiscard]] std::size_t frames_in(std::uint32_t step) const;
+  [[nodiscard]] LedgerKey key_of(std::uint32_t step, std::size_t frame) const;
+  /// Whether an entry is of this journal, and whether it has a frame of its own: not one of a drag or wedge as a whole.
+  [[nodiscard]] bool is_of_journal(const LedgerKey& key, const RunLedger::Note& note) const;
+  [[nodiscard]] bool is_frame(const LedgerKey& key) const;
+
+ private:
+  [[nodiscard]] FramePlace place(std::uint32_t step, std::size_t frame) const;
+  void look_into_folder();
+  void judge_run();
+  void require_known_files() const;
+  void find_kept();
+  [[nodiscard]] std::optional<std::string> other_journal() const;
+  [[nodiscard]] const std::string* expected_edits(const LedgerKey& key) const;
+  [[nodiscard]] bool is_kept(const Json& entry) const;
+  [[nodiscard]] bool may_be_renamed(const LedgerKey& key) const;
+  [[nodiscard]] bool has_its_name(const LedgerKey& key, const Json& entry) const;
+  void require_free(const std::string& name) const;
+  void remove_leftovers() const;
+
+  const Arguments& arguments_;
+  const Journal& journal_;
+  std::filesystem::path folder_;
+  Json source_;
+  EditHashes hashes_;
+  std::uint32_t first_ = 0, last_ = 0;
+  std::optional<RunLedger> ledger_;  // of a run that can be gone on with, or in which things are replaced
+  bool replaces_all_ = false;        // --overwrite of a run of another source
+  std::size_t frames_ = 0, kept_frames_ = 0;
+  std::vector<std::vector<bool>> kept_;  // [step - first][frame]
+  std::uint64_t pixels_different_ = 0;
+  bool is_complete_ = false;
+};
+
+/// A file as it is now, whose bytes have this hash. Throws IoError.
+[[nodiscard]] FileStamp stamp_of(const std::filesystem::path& path, std::string hash);
+
+}  // namespace relook

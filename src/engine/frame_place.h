@@ -1,0 +1,29 @@
+// Which of a journal's frames a frame is, and what it is called.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "edit/journal.h"
+
+namespace relook {
+
+/// A frame of a journal: 0 is the one before any edit; a drag or a wedge has frames numbered from 1.
+struct FramePlace {
+  std::uint32_t step = 0;
+  std::optional<std::uint32_t> number;
+  std::uint32_t count = 0;  // frames of the step, if they are numbered
+};
+/// "3", "3_01", "3_001": as many digits as the count has, at least two.
+[[nodiscard]] std::string step_label(const FramePlace& place);
+/// "frames/0003.exr", "frames/0003_01.exr".
+[[nodiscard]] std::string frame_name(const FramePlace& place);
+[[nodiscard]] std::string preview_name(const FramePlace& place);
+
+/// The frame `entry` (from 0) of step `step` (from 1).
+[[nodiscard]] FramePlace place_of(const JournalStep& entry, std::uint32_t step, std::size_t frame);
+/// The last frame of a step.
+[[nodiscard]] FramePlace last_place_of(const JournalStep& entry, std::uint32_t step);
+
+}  // namespace relook

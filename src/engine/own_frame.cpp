@@ -1,0 +1,63 @@
+// Tells the frames that relook has written from other people's, by their headers.
+#include <openexr.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <string_view>
+
+#include "engine/frame_file.h"
+#include "trace/ray_tree.h"
+
+namespace relook {
+namespace {
+
+constexpr std::array<std::string_view, 10> kPlainAttributes{
+    "channels", "compression",      "dataWindow",         "displayWindow",     "lineOrder",
+    "tiles",    "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "chromaticities"};
+
+void ignore_message(exr_const_context_t, exr_result_t, const char*) {}
+
+struct FinishContext {
+  void operator()(exr_context_t context) const { exr_finish(&context); }
+};
+
+bool is_our_attribute(std::string_view name) {
+  return name.starts_with("relook:") || name.starts_with("cryptomatte/") ||
+         std::ranges::find(kPlainAttributes, name) != kPlainAttributes.end();
+}
+
+bool has_our_attributes(exr_const_context_t file) {
+  std::int32_t count = 0;
+  if (exr_get_attribute_count(file, 0, &count) != EXR_ERR_SUCCESS) return false;
+  bool names_scene = false;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const exr_attribute_t* attribute = nullptr;
+    if (exr_get_attribute_by_index(file, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute) != EXR_ERR_SUCCESS) return false;
+    if (!is_our_attribute(attribute->name)) return false;
+    names_scene = names_scene || std::string_view(attribute->name) == "relook:scene";
+  }
+  return names_scene;
+}
+
+}  // namespace
+
+bool is_own_frame(const std::filesystem::path& path) {
+  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  setup.error_handler_fn = ignore_message;
+  exr_context_t opened = nullptr;
+  if (exr_start_read(&opened, path.c_str(), &setup) != EXR_ERR_SUCCESS) {
+    if (opened != nullptr) exr_finish(&opened);
+    return false;
+  }
+  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, FinishContext> context(opened);
+  int parts = 0;
+  exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
+  exr_compression_t compression = EXR_COMPRESSION_NONE;
+  return exr_get_count(opened, &parts) == EXR_ERR_SUCCESS && parts == 1 &&
+         exr_get_storage(opened, 0, &storage) == EXR_ERR_SUCCESS && storage == EXR_STORAGE_TILED &&
+         exr_get_compression(opened, 0, &compression) == EXR_ERR_SUCCESS && compression == EXR_COMPRESSION_ZIP &&
+         has_our_attributes(opened);
+}
+
+}  // namespace relook

@@ -1,0 +1,117 @@
+#include "report/edit_hashes.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/hash.h"
+#include "scene/gltf_source.h"
+
+namespace relook {
+namespace {
+
+constexpr std::size_t kEntityDepth = 2;  // "/materials/Glass"
+
+/// The file names that a value has under a key of journals that brings in a file.
+void collect_files(const Json& value, std::vector<std::string>& names) {
+  for (const auto& [key, part] : value.items()) {
+    if (value.is_object() && (key == "asset" || key == "uri") && part.is_string())
+      names.push_back(part.get<std::string>());
+    else if (part.is_structured())
+      collect_files(part, names);
+  }
+}
+
+/// A file that a journal names, and what it names itself; none when there is no such file.
+std::vector<std::filesystem::path> with_named_files(const Journal& journal, const std::string& name) {
+  std::vector<std::filesystem::path> paths;
+  try {
+    paths.push_back(contained_path(journal.path.parent_path(), name, journal.file, ""));
+    if (paths.back().extension() == ".gltf" || paths.back().extension() == ".glb")
+      std::ranges::copy(external_files(read_gltf_source(paths.back())), std::back_inserter(paths));
+  } catch (const InputError&) {  // said by the step itself, or data within the journal
+  }
+  return paths;
+}
+
+std::string file_hash(const std::filesystem::path& path) {
+  try {
+    return hash128(read_file(path));
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+bool only_replaces_values(const Edit& edit) {
+  return files_of(edit).empty() && std::ranges::all_of(edit, [](const PatchOperation& operation) {
+           const auto depth = static_cast<std::size_t>(std::ranges::count(operation.path, '/'));
+           return operation.op == PatchOp::test || (operation.op == PatchOp::replace && depth > kEntityDepth);
+         });
+}
+
+}  // namespace
+
+EditHashes::EditHashes(const Journal& journal) : by_step_(1, std::vector<std::string>(1)) {
+  std::map<std::string, std::string> hashes_of_files;
+  const auto hash_of = [&](const std::string& name) -> const std::string& {
+    const auto [found, is_new] = hashes_of_files.try_emplace(name);
+    if (is_new)
+      for (const std::filesystem::path& path : with_named_files(journal, name)) found->second += file_hash(path);
+    return found->second;
+  };
+  std::string last;
+  for (const JournalStep& step : journal.steps) {
+    std::vector<std::string>& hashes = by_step_.emplace_back();
+    const char* kind = !step.drag.empty() ? "drag" : !step.wedge.empty() ? "wedge" : "edit";
+    for (const Edit& edit : frames_of(step)) {
+      std::string text = last + kind + std::to_string(hashes.size());
+      for (const PatchOperation& operation : edit)
+        text += Json{static_cast<int>(operation.op), operation.path, operation.from, operation.value}.dump(
+            -1, ' ', false, Json::error_handler_t::replace);
+      for (const std::string& name : files_of(edit)) text += hash_of(name);
+      hashes.push_back(last = hash128(bytes_of(text)));
+    }
+  }
+}
+
+const std::string& EditHashes::at(std::uint32_t step, std::size_t frame) const { return by_step_.at(step).at(frame); }
+const std::string& EditHashes::after(std::uint32_t step) const { return by_step_.at(step).back(); }
+
+std::vector<std::string> files_of(const Edit& edit) {
+  std::vector<std::string> names;
+  for (const PatchOperation& operation : edit) {
+    const bool is_name = operation.path.ends_with("/uri") || operation.path.ends_with("/asset");
+    if (is_name && operation.value.is_string()) names.push_back(operation.value.get<std::string>());
+    if (operation.value.is_structured()) collect_files(operation.value, names);
+  }
+  return names;
+}
+
+std::vector<std::filesystem::path> files_of(const Journal& journal) {
+  std::vector<std::filesystem::path> paths;
+  for (const JournalStep& step : journal.steps)
+    for (const Edit& edit : frames_of(step))
+      for (const std::string& name : files_of(edit))
+        std::ranges::move(with_named_files(journal, name), std::back_inserter(paths));
+  std::ranges::sort(paths);
+  paths.erase(std::ranges::unique(paths).begin(), paths.end());
+  return paths;
+}
+
+std::vector<Edit> merged(const std::vector<const Edit*>& edits) {
+  std::vector<Edit> result;
+  bool may_append = false;
+  for (const Edit* edit : edits) {
+    const bool is_plain = only_replaces_values(*edit);
+    if (is_plain && may_append)
+      result.back().insert(result.back().end(), edit->begin(), edit->end());
+    else
+      result.push_back(*edit);
+    may_append = is_plain;
+  }
+  return result;
+}
+
+}  // namespace relook

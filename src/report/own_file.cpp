@@ -1,0 +1,107 @@
+#include "report/own_file.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "base/error.h"
+#include "base/files.h"
+#include "base/json.h"
+#include "edit/journal_draft.h"
+#include "engine/frame_file.h"
+#include "engine/preview.h"
+#include "report/line_reader.h"
+
+namespace relook {
+namespace {
+
+/// The first bytes of a file, as many as there are.
+std::string start_of(const std::filesystem::path& path, std::size_t bytes) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (error) return "";
+  return LineReader(path).read_at(0, std::min<std::uintmax_t>(size, bytes));
+}
+
+bool starts_with(const std::filesystem::path& path, std::string_view start) {
+  return start_of(path, start.size()) == start;
+}
+
+/// The member `relook` of a JSON file: "report/1".
+std::string format_of(const std::filesystem::path& path) {
+  const Bytes bytes = read_file(path);
+  const Json document = parse_json(text_of(bytes), path.string());
+  if (!document.is_object() || !document.contains("relook") || !document["relook"].is_string()) return "";
+  return document["relook"].get<std::string>();
+}
+
+bool has_format(const std::filesystem::path& path, std::string_view prefix) {
+  return format_of(path).starts_with(prefix);
+}
+
+bool is_of_kind(const std::filesystem::path& path, OwnKind kind) {
+  switch (kind) {
+    case OwnKind::frame:
+      return is_own_frame(path);
+    case OwnKind::preview:
+      return is_own_preview(start_of(path, 64));
+    case OwnKind::page:
+      return start_of(path, 512).find("<meta name=\"generator\" content=\"relook\">") != std::string::npos;
+    case OwnKind::page_data:
+      return starts_with(path, "relook_");
+    case OwnKind::report:
+      return starts_with(path, "{\n  \"relook\": \"report/") || has_format(path, "report/");
+    case OwnKind::progress: {
+      const std::string start = start_of(path, 256);
+      return start.empty() || start.find(" {\"relook\":\"progress/") == 32;
+    }
+    case OwnKind::comparison:
+      return has_format(path, "compare/");
+    case OwnKind::plan:
+      return has_format(path, "plan/");
+    case OwnKind::trace:
+      return has_format(path, "trace/");
+    case OwnKind::access_log:
+      return starts_with(path, "relook-access/");
+    case OwnKind::journal:
+      return is_generated_journal(text_of(read_file(path)));
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string_view own_kind_name(OwnKind kind) {
+  constexpr std::array<std::string_view, 11> kNames{"a frame",
+                                                    "a preview",
+                                                    "a page",
+                                                    "a page's data",
+                                                    "the report of a run",
+                                                    "the notes of a run",
+                                                    "a comparison",
+                                                    "a plan",
+                                                    "a trace",
+                                                    "an access log",
+                                                    "a journal"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+bool is_own_file(const std::filesystem::path& path, OwnKind kind) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return false;
+  try {
+    return is_of_kind(path, kind);
+  } catch (const Error&) {
+    return false;
+  } catch (const Json::exception&) {
+    return false;
+  }
+}
+
+bool is_dropping(const std::filesystem::path& name) {
+  const std::string text = name.filename().string();
+  constexpr std::array<std::string_view, 5> kNames{".DS_Store", "Thumbs.db", "desktop.ini", ".directory", ".localized"};
+  return std::ranges::find(kNames, text) != kNames.end() || text.starts_with("._") || text.starts_with(".nfs");
+}
+
+}  // namespace relook

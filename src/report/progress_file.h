@@ -1,0 +1,80 @@
+// RUN/progress.jsonl: what the commands that write a run have finished, appended frame by frame and synced, so that a
+// run that was killed can be taken up again; gone once report.json has all of it and no command is writing any more. A
+// line is the XXH3-128 of its text, a space, and the text: {"relook":"progress/2","source":{...}} where a command
+// begins, and entries as in report.json. A line that was cut short counts as none.
+//
+// It is also the lock of the run: a command holds the bytes of its steps (byte k for step k, open file description
+// locks), so that commands with other steps of the same run work side by side, on other hosts, too, and two with the
+// same steps never do. Where a file system has no locks, that is the user's to avoid.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "base/json.h"
+
+namespace relook {
+
+inline constexpr std::string_view kProgressName = "progress.jsonl";
+inline constexpr std::string_view kProgressHead = "{\"relook\":\"progress/";
+
+/// The text of a line; "" when it is not as it was written.
+[[nodiscard]] std::string_view progress_text(std::string_view line);
+
+class ProgressFile {
+ public:
+  /// Opens or creates it in the folder `run` and locks the steps first..last. Throws BusyError when another command is
+  /// at one of them, IoError, ResourceError.
+  ProgressFile(const std::filesystem::path& run, std::uint32_t first_step, std::uint32_t last_step);
+  ~ProgressFile();
+  ProgressFile(const ProgressFile&) = delete;
+  ProgressFile& operator=(const ProgressFile&) = delete;
+
+  /// Adds a line and syncs it to disk, while no other command does.
+  void append(const Json& entry);
+  /// Notes that a command of this source begins.
+  void begin(const Json& source);
+  /// Runs `work` while no other command appends or does the same.
+  template <class Work>
+  void exclusively(const Work& work) {
+    const Turn turn(*this, kAppendByte);
+    work();
+  }
+  /// The same for the page, which takes longer: appending goes on meanwhile.
+  template <class Work>
+  void exclusively_for_page(const Work& work) {
+    const Turn turn(*this, kPageByte);
+    work();
+  }
+  /// Whether no other command is at any step of the run; if so, none begins until unlock_other_steps(). Not for long:
+  /// commands that begin wait for a second at most.
+  [[nodiscard]] bool lock_all_steps();
+  /// Holds the steps first..last alone again.
+  void unlock_other_steps();
+  [[nodiscard]] std::uint64_t size_bytes() const;
+  /// The run is complete. Requires: lock_all_steps() has said so.
+  void remove();
+
+ private:
+  static constexpr std::uint64_t kStepBytes = std::uint64_t{1} << 40, kAppendByte = kStepBytes,
+                                 kPageByte = kStepBytes + 1;
+  class Turn {
+   public:
+    Turn(const ProgressFile& file, std::uint64_t byte);
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    const ProgressFile& file_;
+    std::uint64_t byte_;
+  };
+  void append_line(std::string_view text);
+
+  std::filesystem::path path_;
+  std::uint32_t first_step_, last_step_;
+  int descriptor_ = -1;
+};
+
+}  // namespace relook

@@ -1,0 +1,37 @@
+// RUN/report.json, written and read an entry at a time: `relook` first, an entry of `steps` a line, `frames` last.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/files.h"
+#include "base/json.h"
+#include "engine/report_entries.h"
+
+namespace relook {
+
+inline constexpr std::string_view kReportName = "report.json";
+inline constexpr std::string_view kStepsLine = "  \"steps\": [";
+inline constexpr std::string_view kStepsEnd = "  ],";
+
+class ReportFile {
+ public:
+  /// `head`: report_head_json(). The file appears with publish(). Throws IoError, ResourceError, as all functions do.
+  ReportFile(const std::filesystem::path& path, const Json& head);
+  /// In the order of the frames.
+  void add(const Json& entry);
+  void publish();
+  /// After publish(). Reads them from the file, which must stay as it is.
+  [[nodiscard]] ReportEntries entries() const;
+
+ private:
+  std::filesystem::path path_;
+  FileWriter file_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> lines_;  // offset, bytes
+  std::vector<std::pair<std::string, std::string>> frames_;     // name, hash
+};
+
+}  // namespace relook

@@ -1,0 +1,59 @@
+// What a run folder holds: the entries of its frames, those of report.json and those noted in progress.jsonl since, by
+// whatever command. Of an entry only its place in the file and the hash of its edits are in memory.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "base/json.h"
+#include "report/line_reader.h"
+
+namespace relook {
+
+/// A step, and within it the number of a frame of a drag or wedge; whole steps come after their frames.
+using LedgerKey = std::pair<std::uint32_t, std::uint32_t>;
+inline constexpr std::uint32_t kWholeStep = std::numeric_limits<std::uint32_t>::max();
+/// Of an entry as step_json() makes it. Throws InputError when it is none.
+[[nodiscard]] LedgerKey ledger_key(const Json& entry);
+
+class RunLedger {
+ public:
+  struct Note {
+    std::string edits;  // hash
+    bool is_in_report = false;
+    std::uint64_t offset = 0;
+    std::size_t bytes = 0;
+  };
+
+  /// Reads what is there; lines that are cut short or make no sense count as none. Throws InputError when report.json
+  /// or progress.jsonl cannot be read.
+  explicit RunLedger(std::filesystem::path run);
+
+  /// Whether the folder has a report or notes that relook has written.
+  [[nodiscard]] bool is_run() const { return is_run_; }
+  /// report.json without its steps; null when there is none that can be gone on with.
+  [[nodiscard]] const Json& head() const { return head_; }
+  /// What all its frames have in common (run_source.h); null when that is not known, as of a run of another version.
+  [[nodiscard]] const Json& source() const { return source_; }
+  [[nodiscard]] const std::map<LedgerKey, Note>& notes() const { return notes_; }
+  [[nodiscard]] const Note* find(const LedgerKey& key) const;
+  /// Throws InputError.
+  [[nodiscard]] Json entry(const Note& note) const;
+
+ private:
+  void read_report();
+  void read_progress();
+  void take(std::string_view text, const LineReader& file, std::size_t skipped, bool is_in_report);
+
+  std::filesystem::path run_;
+  bool is_run_ = false;
+  Json head_, source_;
+  std::map<LedgerKey, Note> notes_;
+  std::unique_ptr<LineReader> report_, progress_;
+};
+
+}  // namespace relook

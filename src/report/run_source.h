@@ -1,0 +1,22 @@
+// What all frames of a run have in common, so that parts of it can be made by several commands: the scene, the view and
+// the arithmetic of its cache, and how its files are written. Nothing here depends on structures, memory or threads,
+// which show in no frame.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "base/json.h"
+
+namespace relook {
+
+struct FrameStyle {
+  bool is_float = false, has_layers = false;
+  std::string view;  // DisplayView::id() of the previews; "": sRGB
+};
+
+/// `manifest`: of the cache (read_manifest()).
+[[nodiscard]] Json run_source(const Json& manifest, const FrameStyle& style);
+/// How a run differs: "frames of 960x540 pixels, not 480x270"; none when it is of the same source.
+[[nodiscard]] std::optional<std::string> difference_of_sources(const Json& there, const Json& here);
+
+}  // namespace relook
