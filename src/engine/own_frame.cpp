@@ -12,9 +12,9 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 10> kPlainAttributes{
-    "channels", "compression",      "dataWindow",         "displayWindow",     "lineOrder",
-    "tiles",    "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "chromaticities"};
+constexpr std::array<std::string_view, 11> kPlainAttributes{
+    "type",  "channels",         "compression",        "dataWindow",        "displayWindow", "lineOrder",
+    "tiles", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "chromaticities"};
 
 void ignore_message(exr_const_context_t, exr_result_t, const char*) {}
 
