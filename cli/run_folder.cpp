@@ -200,7 +200,16 @@ void RunFolder::write_report(RunReport& report, const Journal& journal) {
   for (std::size_t i = 0; i < report.steps.size(); ++i) report.steps[i].frame_hash = frame_hashes_[i];
   append_note(std::exchange(finished_, std::nullopt));
   const Json json = report_json(report);
-  write_run_page(path_, json, journal);
+  Json head = json;
+  head.erase("steps");
+  head.erase("frames");
+  const Json& steps = json.at("steps");
+  write_run_page({.folder = path_,
+                  .head = head,
+                  .entries = {steps.size(), [&](std::size_t i) { return steps.at(i); }},
+                  .journal = journal,
+                  .reads_pixels = true,
+                  .check = {}});
   write_file(path_ / "report.json", json.dump(2) + "\n");
   if (!report.interrupted) progress_.remove();
 }
