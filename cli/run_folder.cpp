@@ -15,7 +15,6 @@
 #include "engine/overlay.h"
 #include "page/run_page.h"
 #include "report/report_file.h"
-#include "shim_tmp.h"
 
 namespace relook {
 namespace {

@@ -39,6 +39,7 @@ std::string policy(const Page& page) {
 
 std::string page_text(const Page& page) {
   std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  text += "<meta name=\"generator\" content=\"relook\">\n";
   text += "<meta http-equiv=\"Content-Security-Policy\" content=\"" + policy(page) + "\">\n";
   text += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   text += "<meta name=\"referrer\" content=\"no-referrer\">\n<link rel=\"icon\" href=\"data:,\">\n";
@@ -47,7 +48,7 @@ std::string page_text(const Page& page) {
     text.append("<style>").append(asset(name).text()).append("</style>\n");
   text.append("</head>\n<body>\n").append(page.body);
   for (const auto& [id, value] : page.data)
-    text += "<script type=\"application/json\" id=\"" + escaped_html(id) + "\">" + script_json(value) + "</script>\n";
+    text += "<script type=\"application/json\" id=\"" + escaped_html(id) + "\">" + value + "</script>\n";
   for (const std::string_view name : page.scripts)
     text.append("<script>").append(asset(name).text()).append("</script>\n");
   return text + "</body>\n</html>\n";

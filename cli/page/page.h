@@ -13,11 +13,11 @@
 namespace relook {
 
 struct Page {
-  std::string title;                               // any text
-  std::vector<std::string_view> styles, scripts;   // names of assets in this folder, in their order in the page
-  std::string body;                                // HTML; what it holds of data is escaped
-  std::vector<std::pair<std::string, Json>> data;  // by the id of the element that holds it
-  bool has_files_beside = false;                   // scripts may load data scripts from beside the page
+  std::string title;                                      // any text
+  std::vector<std::string_view> styles, scripts;          // names of assets in this folder, in their order in the page
+  std::string body;                                       // HTML; what it holds of data is escaped
+  std::vector<std::pair<std::string, std::string>> data;  // JSON as script_json() writes it, by its element's id
+  bool has_files_beside = false;                          // scripts may load data scripts from beside the page
 };
 
 [[nodiscard]] std::string page_text(const Page& page);

@@ -1,6 +1,6 @@
 "use strict";
 // The linear pixels of a run's frames, bit by bit those of its EXR files: tiles as OpenEXR packs them, each stored with
-// the first frame that has it. They stand in the page, or in pixels/*.js beside it.
+// the first frame that has it. They stand in the page, or in pixels/*.js beside it; of long runs only some frames.
 
 /** Values of all half floats, by their bits. */
 const halfValues = (() => {
@@ -39,33 +39,19 @@ class FrameBuffer {
 }
 
 class RunFrames {
-  /** `embedded`: base64 by entry, or null when it is beside the page. */
-  constructor(layout, embedded) {
-    this.layout = layout;
-    this.embedded = embedded;
-    this.packedBytes = new Map();  // by entry, the latest used last
-    this.waiting = new Map();
-    this.positions = layout.entries.map(({ tiles, sizes }) => {
-      const positions = new Map();
-      let offset = 0;
-      tiles.forEach((tile, i) => {
-        positions.set(tile, [offset, sizes[i]]);
-        offset += sizes[i];
-      });
-      return positions;
-    });
-    const tileCount = Math.ceil(layout.width / layout.tile) * Math.ceil(layout.height / layout.tile);
-    let last = new Int32Array(tileCount);
-    this.sources = layout.entries.map(({ tiles }, entry) => {
-      last = last.slice();
-      for (const tile of tiles) last[tile] = entry;
-      return last;
-    });
+  /** `embedded`: a record [entry, tiles, sizes, base64] for each frame that brought tiles, or null when they are beside
+      the page, several to a file. */
+  constructor(layout, embedded, details) {
+    Object.assign(this, { layout, embedded, details });
+    this.starts = embedded ? embedded.map(([entry]) => entry) : layout.bundles ?? [];  // first entries of bundles
+    this.bundles = new Map();  // promises of them by first entry, the latest used last
+    this.bytesOf = new Map();
   }
 
-  /** Makes `buffer` the frame of an entry: takes the tiles that it does not have yet. */
+  /** Makes `buffer` the frame of an entry: takes the tiles that it does not have yet. False: they are not in the page. */
   async fill(buffer, entry) {
-    const wanted = this.sources[entry], tiles = [];
+    const wanted = await this.details.sources(entry, buffer.tileCount), tiles = [];
+    if (!wanted) return false;
     for (let tile = 0; tile < wanted.length; ++tile)
       if (buffer.sources[tile] !== wanted[tile]) tiles.push(tile);
     await Promise.all(tiles.map(async (tile) => {
@@ -73,6 +59,7 @@ class RunFrames {
       this.place(buffer, tile, raw);
       buffer.sources[tile] = wanted[tile];
     }));
+    return true;
   }
 
   rect(tile) {
@@ -98,12 +85,11 @@ class RunFrames {
 
   /** OpenEXR's ZIP undone: inflate, sums, bytes put back in turn. */
   async rawTile(tile, entry) {
-    const [offset, size] = this.positions[entry].get(tile), { width, height } = this.rect(tile);
-    const packed = (await this.packed(entry)).subarray(offset, offset + size);
-    const rawSize = width * height * this.layout.channels.reduce((sum, { bytes }) => sum + bytes, 0);
+    const { bytes, places } = (await this.bundle(entry)).get(entry), [offset, size] = places.get(tile);
+    const { width, height } = this.rect(tile), packed = bytes.subarray(offset, offset + size);
+    const rawSize = width * height * this.layout.channels.reduce((sum, { bytes: each }) => sum + each, 0);
     if (size === rawSize) return packed.slice();
-    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
-    const split = new Uint8Array(await new Response(stream).arrayBuffer());
+    const split = await beside.inflated(packed);
     const raw = new Uint8Array(rawSize), evenSize = (rawSize + 1) >> 1;
     let sum = split[0];
     raw[0] = sum;
@@ -114,52 +100,57 @@ class RunFrames {
     return raw;
   }
 
-  async packed(entry) {
-    let bytes = this.packedBytes.get(entry);
-    if (!bytes) {
-      if (!this.waiting.has(entry)) this.waiting.set(entry, this.load(entry));
-      bytes = await this.waiting.get(entry);
-      this.waiting.delete(entry);
+  /** The records of the bundle that an entry is in, by entry: their bytes, and offset and size of each tile. */
+  bundle(entry) {
+    let low = 0, high = this.starts.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.starts[middle] <= entry) low = middle + 1;
+      else high = middle;
     }
-    this.packedBytes.delete(entry);
-    this.packedBytes.set(entry, bytes);
-    let total = 0;
-    for (const kept of this.packedBytes.values()) total += kept.length;
-    for (const [key, kept] of this.packedBytes) {
-      if (total < RunFrames.mostBytes || key === entry) break;
-      total -= kept.length;
-      this.packedBytes.delete(key);
-    }
-    return bytes;
+    const start = this.starts[low - 1], bundle = this.bundles.get(start) ?? this.load(low - 1);
+    this.bundles.delete(start);
+    this.bundles.set(start, bundle);
+    return bundle;
   }
 
-  async load(entry) {
-    const text = this.embedded ? this.embedded[entry] : await RunFrames.textBeside(entry);
-    const binary = atob(text), bytes = new Uint8Array(binary.length);
-    for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
-    return bytes;
+  async load(number) {
+    const start = this.starts[number];
+    try {
+      const records = this.embedded ? [this.embedded[number]] : await beside.load(beside.name("", start, this.layout));
+      const bundle = new Map(records.map(([entry, tiles, sizes, base64]) => {
+        const places = new Map();
+        let offset = 0, i = 0;
+        for (let k = 0; k < tiles.length; k += 2) {
+          for (let tile = tiles[k]; tile < tiles[k] + tiles[k + 1]; ++tile) {
+            places.set(tile, [offset, sizes[i]]);
+            offset += sizes[i++];
+          }
+        }
+        return [entry, { bytes: beside.bytes(base64), places }];
+      }));
+      this.forget(start, [...bundle.values()].reduce((sum, { bytes }) => sum + bytes.length, 0));
+      return bundle;
+    } catch (error) {
+      this.bundles.delete(start);
+      throw error;
+    }
   }
 
-  static textBeside(entry) {
-    return new Promise((resolve, reject) => {
-      RunFrames.expected.set(entry, resolve);
-      const script = document.createElement("script");
-      const name = `pixels/${String(entry).padStart(5, "0")}.js`;
-      script.onload = () => script.remove();
-      script.onerror = () => reject(new Error(`${name} is not beside this page`));
-      script.src = name;
-      document.head.append(script);
-    });
+  /** Of bundles that were not used for long, when there are too many with the one that has just come. */
+  forget(newest, bytes) {
+    this.bytesOf.set(newest, bytes);
+    let total = [...this.bytesOf.values()].reduce((sum, each) => sum + each, 0);
+    for (const start of [...this.bundles.keys()]) {
+      if (total < RunFrames.mostBytes) break;
+      if (start === newest || !this.bytesOf.has(start)) continue;
+      total -= this.bytesOf.get(start);
+      this.bytesOf.delete(start);
+      this.bundles.delete(start);
+    }
   }
 }
 RunFrames.mostBytes = 3e8;  // kept in memory, packed
-RunFrames.expected = new Map();
-
-/** What pixels/*.js call. */
-function relook_pixels(entry, text) {
-  RunFrames.expected.get(entry)(text);
-  RunFrames.expected.delete(entry);
-}
 
 /** 8-bit sRGB codes of linear values times 2^exposure, by the bits of a half, or by the upper 17 bits of a float32. */
 class DisplayTable {

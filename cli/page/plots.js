@@ -3,14 +3,28 @@
 
 class Plots {
   /** `open(entry)` is called for the step that is clicked. */
-  constructor(section, report, labels, open) {
-    Object.assign(this, { section, report, labels, open });
+  constructor(section, report, steps, labels, open) {
+    Object.assign(this, { section, report, steps, open });
     this.charts = [];
+    this.each = Math.max(1, Math.ceil(steps.length / Plots.mostPoints));
+    this.entries = this.chosen();
+    this.labels = this.entries.map((entry) => labels[entry]);
     document.addEventListener("scheme", () => this.charts.length > 0 && this.draw());
   }
 
+  /** The entries that have a point: all, or of every few the one that took longest. */
+  chosen() {
+    const entries = [];
+    this.steps.forEach((step, entry) => {
+      const last = entries.length - 1;
+      if (entry % this.each === 0) entries.push(entry);
+      else if (step.seconds.total > this.steps[entries[last]].seconds.total) entries[last] = entry;
+    });
+    return entries;
+  }
+
   column(read) {
-    return this.report.steps.map(read);
+    return this.entries.map((entry) => read(this.steps[entry]));
   }
 
   /** The plots: heading, what it says, kind, series of names and values. */
@@ -48,6 +62,8 @@ class Plots {
     for (const chart of this.charts) chart.destroy();
     this.charts = [];
     this.section.replaceChildren();
+    if (this.each > 1)
+      this.section.append(page.element("p", { className: "note" }, `Of every ${this.each} frames the one that took longest.`));
     for (const plot of this.all()) {
       const canvas = page.element("canvas", { role: "img", "aria-label": plot.title });
       const figure = page.element("div", { className: "plot" }, page.element("h2", {}, plot.title), page.element("p", {}, plot.text));
@@ -75,7 +91,7 @@ class Plots {
       options: {
         animation: false, responsive: true, maintainAspectRatio: false,
         interaction: { mode: "index", intersect: false },
-        onClick: (event, items) => items.length > 0 && this.open(items[0].index),
+        onClick: (event, items) => items.length > 0 && this.open(this.entries[items[0].index]),
         scales: {
           x: { stacked: isStacked, ticks: { color: text, maxRotation: 0, autoSkip: true }, grid: { display: false } },
           y: { stacked: isStacked, type: log ? "logarithmic" : "linear", beginAtZero: true, grid: { color: line },
@@ -94,7 +110,8 @@ class Plots {
     };
   }
 
-  title(entry) {
-    return `${this.labels[entry]} ${this.report.steps[entry].name}`;
+  title(point) {
+    return `${this.labels[point]} ${this.steps[this.entries[point]].name}`;
   }
 }
+Plots.mostPoints = 1000;

@@ -1,148 +1,196 @@
 #include "page/run_page.h"
 
-#include <cstdio>
-#include <span>
+#include <algorithm>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "base/files.h"
 #include "page/page.h"
-#include "page/run_pixels.h"
+#include "page/page_details.h"
+#include "page/page_files.h"
+#include "page/page_pixels.h"
+#include "page/run_entry.h"
 #include "trace/ray_tree.h"
 
 namespace relook {
 namespace {
 
-std::string op_name(PatchOp op) {
-  constexpr const char* kNames[] = {"add", "remove", "replace", "move", "copy", "test"};
-  return kNames[static_cast<std::size_t>(op)];
-}
+constexpr std::size_t kDataBytes = 4'200'000;  // of the page; the rest is for scripts, styles and what stands around it
+constexpr std::size_t kThumbnailBytes = 1'000'000;  // of the data, for thumbnails
 
-Json edit_json(const Edit& edit) {
-  Json operations = Json::array();
-  for (const PatchOperation& operation : edit) {
-    Json entry{{"op", op_name(operation.op)}, {"path", operation.path}};
-    if (!operation.from.empty()) entry["from"] = operation.from;
-    if (operation.op == PatchOp::add || operation.op == PatchOp::replace || operation.op == PatchOp::test)
-      entry["value"] = operation.value;
-    operations.push_back(std::move(entry));
+/// What a page says of all entries, those included that it has no rows for.
+struct Totals {
+  double seconds = 0;
+  std::uint64_t verified_frames = 0, pixels_different = 0;
+
+  void add(const Json& entry) {
+    const Json::json_pointer total("/seconds/total");
+    if (entry.contains(total) && entry[total].is_number()) seconds += entry[total].get<double>();
+    const auto verify = entry.find("verify");
+    if (verify == entry.end() || !verify->is_object()) return;
+    ++verified_frames;
+    if (const auto different = verify->find("pixels_different"); different != verify->end() && different->is_number())
+      pixels_different += different->get<std::uint64_t>();
   }
-  return operations;
-}
+};
 
-/// What the journal has for each entry of a report; null for what no edit made.
-Json edits_json(const Json& steps, const Journal& journal) {
-  Json edits = Json::array();
-  for (const Json& entry : steps) {
-    edits.push_back(nullptr);
-    const auto number = entry.at("step").get<std::size_t>();
-    if (number == 0 || number > journal.steps.size()) continue;
-    const JournalStep& step = journal.steps[number - 1];
-    const std::span<const Edit> frames = frames_of(step);
-    Json edit{{"select", step.select}};
-    for (const char* kind : {"drag_frame", "wedge_frame"})
-      if (entry.at(kind).is_number()) edit["edit"] = edit_json(frames[entry.at(kind).get<std::size_t>() - 1]);
-    if (!edit.contains("edit") && step.drag.empty() && step.wedge.empty()) edit["edit"] = edit_json(step.edit);
-    edits.back() = std::move(edit);
+/// Images that stand in the page, by the name of their file.
+class Pictures {
+ public:
+  void add(const std::string& name, BytesView png) {
+    const auto [place, is_new] = urls_.emplace(name, png_url(png));
+    if (is_new) bytes_ += place->second.size() + name.size() + 6;
   }
-  return edits;
+  /// They are files beside the page, and stay so.
+  void leave_out() {
+    is_open_ = false;
+    urls_.clear();
+    bytes_ = 0;
+  }
+  [[nodiscard]] bool is_open() const { return is_open_; }
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
+  [[nodiscard]] const std::map<std::string, std::string>& urls() const { return urls_; }
+
+ private:
+  std::map<std::string, std::string> urls_;
+  std::size_t bytes_ = 0;
+  bool is_open_ = true;
+};
+
+/// Goes through the entries once. What the page has no room for leaves it in this order: overlays, pixels, thumbnails,
+/// details. Rows stay, and end when there is no room for them either.
+class RunPage {
+ public:
+  explicit RunPage(const RunPageInput& input)
+      : input_(input),
+        files_(input.folder),
+        pixels_(input.folder, files_),
+        details_(files_, std::max(pixels_.frames_bytes() / 2, kLeastBesideBytes) / 8),
+        head_(shown_head(input.head)),
+        head_bytes_(script_json(head_).size()) {}
+
+  void write() {
+    for (std::size_t i = 0; i < input_.entries.count; ++i) {
+      check();
+      const Json entry = input_.entries.at(i);
+      totals_.add(entry);
+      if (!rows_are_full_) take(i, entry);
+    }
+    details_.end_chunk();
+    const std::string text = page_text(page());
+    check();
+    write_file(input_.folder / "report.html", text);
+    files_.keep_new();
+  }
+
+ private:
+  void check() const {
+    if (input_.check) input_.check();
+  }
+  void take(std::size_t i, const Json& entry);
+  [[nodiscard]] Json take_frame(std::size_t i, const std::string& stem);
+  [[nodiscard]] Json take_overlays(const std::string& stem);
+  [[nodiscard]] std::size_t row_bytes() const { return head_bytes_ + rows_text_.size(); }
+  void make_room();
+  [[nodiscard]] Page page();
+
+  const RunPageInput& input_;
+  PageFiles files_;
+  PagePixels pixels_;
+  PageDetails details_;
+  Pictures overlays_, thumbnails_;
+  Json head_;
+  std::size_t head_bytes_;
+  std::string rows_text_;
+  std::size_t rows_ = 0;
+  bool rows_are_full_ = false;
+  Totals totals_;
+};
+
+void RunPage::take(std::size_t i, const Json& entry) {
+  const std::string stem = stem_of(entry, i);
+  const std::string row = (rows_ == 0 ? "" : ",\n") + script_json(row_of(entry, stem));
+  const std::size_t places = pixels_.is_beside() ? pixels_.bytes_in_page() : 0;
+  rows_are_full_ = row_bytes() + places + row.size() > kDataBytes;
+  if (rows_are_full_) return;
+  rows_text_ += row;
+  ++rows_;
+  if (details_.is_between_chunks()) details_.start_chunk(pixels_.sources());
+  const Json kinds = take_overlays(stem);
+  details_.add(details_of(entry, input_.journal, kinds), input_.reads_pixels ? take_frame(i, stem) : Json::object());
+  make_room();
 }
 
-/// Files of overlays/ that belong to an entry, by kind: "touched" -> "overlays/0003_touched.png".
-Json overlays_of(const std::filesystem::path& folder, const Json& entry) {
-  Json overlays = Json::object();
-  const std::string stem = std::filesystem::path(entry.at("preview").get<std::string>()).stem().string();
+/// The tiles that the page has of a frame, and its thumbnail.
+Json RunPage::take_frame(std::size_t i, const std::string& stem) {
+  const std::size_t others = row_bytes() + details_.bytes_in_page() + thumbnails_.bytes();
+  pixels_.take(i, stem, i + 1 == input_.entries.count, kDataBytes - std::min(others, kDataBytes));
+  if (thumbnails_.is_open()) {
+    thumbnails_.add("previews/" + stem + ".png", pixels_.thumbnail());
+    if (thumbnails_.bytes() > kThumbnailBytes) thumbnails_.leave_out();
+  }
+  return pixels_.has_last() ? Json{{"tiles", pixels_.last_tiles()}} : Json::object();
+}
+
+/// The kinds of overlays that a frame has: "touched" is "overlays/0003_touched.png".
+Json RunPage::take_overlays(const std::string& stem) {
+  Json kinds = Json::array();
   for (const char* kind : {"dependent", "touched", "groups", "tunnels"}) {
     const std::string name = "overlays/" + stem + "_" + kind + ".png";
     std::error_code error;
-    if (std::filesystem::is_regular_file(folder / name, error)) overlays[kind] = name;
+    if (!std::filesystem::is_regular_file(input_.folder / name, error)) continue;
+    kinds.push_back(kind);
+    if (overlays_.is_open()) overlays_.add(name, read_file(input_.folder / name));
   }
-  return overlays;
+  return kinds;
 }
 
-/// The overlays of all entries: files beside the page, or the images themselves when all of them fit.
-Json overlays_json(const std::filesystem::path& folder, const Json& steps, std::size_t embedded_bytes) {
-  Json all = Json::array();
-  std::size_t bytes = 0;
-  for (const Json& entry : steps) {
-    all.push_back(overlays_of(folder, entry));
-    for (const auto& [kind, name] : all.back().items())
-      bytes += std::filesystem::file_size(folder / name.get<std::string>());
-  }
-  if (bytes > embedded_bytes) return all;
-  for (Json& overlays : all)
-    for (auto& overlay : overlays.items())
-      overlay.value() = png_url(read_file(folder / overlay.value().get<std::string>()));
-  return all;
+void RunPage::make_room() {
+  const auto is_over = [&] {
+    return row_bytes() + details_.bytes_in_page() + pixels_.bytes_in_page() + overlays_.bytes() + thumbnails_.bytes() >
+           kDataBytes;
+  };
+  if (is_over()) overlays_.leave_out();
+  if (is_over() && !pixels_.is_beside()) pixels_.move_out();
+  if (is_over()) thumbnails_.leave_out();
+  if (is_over() && !details_.is_beside()) details_.move_out();
 }
 
-std::string data_name(std::size_t entry) {
-  char name[32];
-  std::snprintf(name, sizeof name, "pixels/%05zu.js", entry);
-  return name;
-}
-
-/// The frames of a run, as its page has them.
-struct PagePixels {
-  Json layout, thumbnails = Json::array();
-  Json embedded = nullptr;  // base64 by entry; null: files beside the page
-};
-
-/// Writes files beside the page as soon as the page is known to be too small for them.
-PagePixels page_pixels(const std::filesystem::path& folder, const Json& steps, std::size_t embedded_bytes) {
-  PagePixels page;
-  RunPixels run;
-  std::vector<std::string> texts;  // of the entries that are in no file yet
-  std::size_t written = 0, bytes = 0;
-  bool is_beside = false;
-  Json tiles = Json::array();
-  for (const Json& entry : steps) {
-    const std::string name = entry.at("frame").get<std::string>();
-    FramePixels pixels = run.take(read_file(folder / name), (folder / name).string());
-    page.thumbnails.push_back(png_url(pixels.thumbnail));
-    tiles.push_back({{"tiles", pixels.tiles}, {"sizes", pixels.sizes}});
-    texts.push_back(base64(pixels.bytes));
-    bytes += texts.back().size();
-    if (!is_beside && bytes > embedded_bytes) {
-      is_beside = true;
-      make_folders(folder / "pixels");
-    }
-    for (std::size_t i = 0; is_beside && i < texts.size(); ++i, ++written)
-      write_file(folder / data_name(written), "relook_pixels(" + std::to_string(written) + ",\"" + texts[i] + "\");\n");
-    if (is_beside) texts.clear();
+Page RunPage::page() {
+  head_["entries"] = input_.entries.count;
+  head_["rows"] = rows_;
+  head_["seconds"] = totals_.seconds;
+  head_["verified"] = {{"frames", totals_.verified_frames}, {"pixels_different", totals_.pixels_different}};
+  Json layout = pixels_.finish();
+  layout.update({{"tile", kTileSize}, {"chunk", kEntriesPerChunk}, {"page", files_.page_number()}});
+  if (!input_.reads_pixels || rows_ == 0) {
+    layout["width"] = head_.at("resolution").at(0);
+    layout["height"] = head_.at("resolution").at(1);
   }
-  Json channels = Json::array();
-  for (const FrameTiles::Channel& channel : run.channels())
-    channels.push_back({{"name", channel.name}, {"bytes", channel.bytes}});
-  page.layout = {{"width", run.last().width()},
-                 {"height", run.last().height()},
-                 {"tile", kTileSize},
-                 {"channels", std::move(channels)},
-                 {"entries", std::move(tiles)}};
-  if (!is_beside) page.embedded = std::move(texts);
+  Json pictures = thumbnails_.urls();
+  pictures.update(Json(overlays_.urls()));
+  std::string columns = "[";
+  for (const std::string_view column : row_columns())
+    columns.append(columns.size() > 1 ? ",\"" : "\"").append(column).append("\"");
+
+  Page page;
+  page.title = "relook: " + input_.journal.name;
+  page.styles = {"page.css", "report.css"};
+  page.scripts = {"chart.min.js", "page.js", "beside.js", "pixels.js", "viewer.js", "plots.js",
+                  "words.js",     "keys.js", "sheet.js",  "side.js",   "report.js"};
+  page.body = asset_text("report.html");
+  page.has_files_beside = pixels_.is_beside() || details_.is_beside();
+  page.data = {
+      {"report", script_json(head_)},  {"rows", "{\"columns\":" + columns + "],\"rows\":[" + rows_text_ + "]}"},
+      {"details", details_.in_page()}, {"pictures", script_json(pictures)},
+      {"layout", script_json(layout)}, {"pixels", pixels_.in_page()}};
   return page;
 }
 
 }  // namespace
 
-void write_run_page(const std::filesystem::path& folder, const Json& report, const Journal& journal,
-                    std::size_t embedded_bytes) {
-  const Json& steps = report.at("steps");
-  PagePixels pixels = page_pixels(folder, steps, embedded_bytes);
-  Page page;
-  page.title = "relook: " + journal.name;
-  page.styles = {"page.css", "report.css"};
-  page.scripts = {"chart.min.js", "page.js", "pixels.js", "viewer.js", "plots.js", "words.js", "keys.js", "report.js"};
-  page.body = asset_text("report.html");
-  page.has_files_beside = pixels.embedded.is_null();
-  page.data = {{"report", report},
-               {"edits", edits_json(steps, journal)},
-               {"thumbnails", std::move(pixels.thumbnails)},
-               {"overlays", overlays_json(folder, steps, embedded_bytes)},
-               {"layout", std::move(pixels.layout)},
-               {"pixels", std::move(pixels.embedded)}};
-  write_file(folder / "report.html", page_text(page));
-}
+void write_run_page(const RunPageInput& input) { RunPage(input).write(); }
 
 }  // namespace relook

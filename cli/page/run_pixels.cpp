@@ -36,74 +36,93 @@ std::vector<unsigned char> colors_of(const FrameTiles& frame, std::size_t tile) 
   return colors;
 }
 
-bool has_same_layout(const FrameTiles& a, const FrameTiles& b) {
-  return a.width() == b.width() && a.height() == b.height() &&
-         std::ranges::equal(a.channels(), b.channels(),
-                            [](const auto& x, const auto& y) { return x.name == y.name && x.bytes == y.bytes; });
+std::vector<FrameTiles::Channel> colors_among(const std::vector<FrameTiles::Channel>& channels) {
+  std::vector<FrameTiles::Channel> colors;
+  std::ranges::copy_if(channels, std::back_inserter(colors), is_color);
+  return colors;
+}
+
+bool are_equal(const std::vector<FrameTiles::Channel>& a, const std::vector<FrameTiles::Channel>& b) {
+  return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return x.name == y.name && x.bytes == y.bytes; });
 }
 
 }  // namespace
 
-std::vector<Bytes> RunPixels::packed_colors(const FrameTiles& frame) const {
-  std::vector<Bytes> packed(frame.count());
-  const bool has_layers = channels_.size() < frame.channels().size();
-  parallel_for(frame.count(), [&](std::size_t tile) {
-    const BytesView stored = frame.packed(tile);
-    packed[tile] = has_layers ? TileCompressor().zip(colors_of(frame, tile)) : Bytes(stored.begin(), stored.end());
+std::vector<Bytes> RunPixels::packed_colors() const {
+  std::vector<Bytes> packed(current_.count());
+  const bool has_layers = channels_.size() < current_.channels().size();
+  parallel_for(current_.count(), [&](std::size_t tile) {
+    const BytesView stored = current_.packed(tile);
+    packed[tile] = has_layers ? TileCompressor().zip(colors_of(current_, tile)) : Bytes(stored.begin(), stored.end());
   });
   return packed;
 }
 
-FramePixels RunPixels::take(Bytes file, std::string_view name) {
+void RunPixels::load(Bytes file, std::string_view name) {
   FrameTiles frame(std::move(file), name);
-  const bool is_first = last_.count() == 0;
-  if (!is_first && !has_same_layout(frame, last_)) throw InputError(name, "", "not like the frames before it");
-  if (is_first) std::ranges::copy_if(frame.channels(), std::back_inserter(channels_), is_color);
-  std::vector<Bytes> all_packed = packed_colors(frame);
-  FramePixels pixels;
-  for (std::size_t tile = 0; tile < frame.count(); ++tile) {
-    const Bytes& packed = all_packed[tile];
-    if (!is_first && packed == packed_[tile]) continue;
-    pixels.tiles.push_back(tile);
-    pixels.sizes.push_back(packed.size());
-    pixels.bytes.insert(pixels.bytes.end(), packed.begin(), packed.end());
-  }
-  if (is_first) {
-    while (frame.width() / shrink_ > kThumbnailWidth && shrink_ < kTileSize) shrink_ *= 2;
-    thumbnail_.width = (frame.width() + shrink_ - 1) / shrink_;
-    thumbnail_.height = (frame.height() + shrink_ - 1) / shrink_;
-    thumbnail_.pixels.resize(std::size_t{thumbnail_.width} * thumbnail_.height);
-  }
-  last_ = std::move(frame);
-  packed_ = std::move(all_packed);
-  shrink(pixels.tiles);
-  pixels.thumbnail = encode_png(thumbnail_);
-  return pixels;
+  const bool is_first = current_.count() == 0;
+  // Layers may come and go with the lights of the scene: the page does not have them.
+  std::vector<FrameTiles::Channel> colors = colors_among(frame.channels());
+  if (!is_first &&
+      (frame.width() != current_.width() || frame.height() != current_.height() || !are_equal(colors, channels_)))
+    throw InputError(name, "", "not like the frames before it");
+  channels_ = std::move(colors);
+  current_ = std::move(frame);
+  packed_ = packed_colors();
+  changed_.clear();
+  for (std::size_t tile = 0; tile < packed_.size(); ++tile)
+    if (kept_.empty() || packed_[tile] != kept_[tile]) changed_.push_back(tile);
 }
 
-void RunPixels::shrink(const std::vector<std::size_t>& tiles) {
-  parallel_for(tiles.size(), [&](std::size_t i) {
-    const TileRect rect = tile_rect(tiles[i], last_.width(), last_.height());
-    const std::vector<Rgba> pixels = last_.pixels(tiles[i]);
-    const std::uint32_t columns = rect.x1 - rect.x0;
-    for (std::uint32_t y0 = rect.y0; y0 < rect.y1; y0 += shrink_) {
-      for (std::uint32_t x0 = rect.x0; x0 < rect.x1; x0 += shrink_) {
-        Rgba sum(0, 0, 0, 0);
-        float count = 0;
-        for (std::uint32_t y = y0; y < std::min(y0 + shrink_, rect.y1); ++y) {
-          for (std::uint32_t x = x0; x < std::min(x0 + shrink_, rect.x1); ++x, ++count) {
-            const Rgba& pixel = pixels[std::size_t{y - rect.y0} * columns + x - rect.x0];
-            // As they are shown: one bright pixel is not to bleach its neighbours.
-            sum.r += std::min(pixel.r, 1.0F);
-            sum.g += std::min(pixel.g, 1.0F);
-            sum.b += std::min(pixel.b, 1.0F);
-          }
-        }
-        thumbnail_.pixels[std::size_t{y0 / shrink_} * thumbnail_.width + x0 / shrink_] = {sum.r / count, sum.g / count,
-                                                                                          sum.b / count, 1};
-      }
-    }
+std::size_t RunPixels::packed_bytes() const {
+  std::size_t bytes = 0;
+  for (const Bytes& tile : packed_) bytes += tile.size();
+  return bytes;
+}
+
+void RunPixels::keep() {
+  kept_.resize(packed_.size());
+  for (const std::size_t tile : changed_) kept_[tile] = packed_[tile];
+  changed_.clear();
+}
+
+Bytes RunPixels::thumbnail() {
+  if (shown_.empty()) {
+    while (current_.width() / shrink_ > kThumbnailWidth && shrink_ < kTileSize) shrink_ *= 2;
+    thumbnail_.width = (current_.width() + shrink_ - 1) / shrink_;
+    thumbnail_.height = (current_.height() + shrink_ - 1) / shrink_;
+    thumbnail_.pixels.resize(std::size_t{thumbnail_.width} * thumbnail_.height);
+    shown_.resize(packed_.size());
+  }
+  parallel_for(packed_.size(), [&](std::size_t tile) {
+    if (shown_[tile] == packed_[tile]) return;
+    shrink(tile);
+    shown_[tile] = packed_[tile];
   });
+  return encode_png(thumbnail_);
+}
+
+void RunPixels::shrink(std::size_t tile) {
+  const TileRect rect = tile_rect(tile, current_.width(), current_.height());
+  const std::vector<Rgba> pixels = current_.pixels(tile);
+  const std::uint32_t columns = rect.x1 - rect.x0;
+  for (std::uint32_t y0 = rect.y0; y0 < rect.y1; y0 += shrink_) {
+    for (std::uint32_t x0 = rect.x0; x0 < rect.x1; x0 += shrink_) {
+      Rgba sum(0, 0, 0, 0);
+      float count = 0;
+      for (std::uint32_t y = y0; y < std::min(y0 + shrink_, rect.y1); ++y) {
+        for (std::uint32_t x = x0; x < std::min(x0 + shrink_, rect.x1); ++x, ++count) {
+          const Rgba& pixel = pixels[std::size_t{y - rect.y0} * columns + x - rect.x0];
+          // As they are shown: one bright pixel is not to bleach its neighbours.
+          sum.r += std::min(pixel.r, 1.0F);
+          sum.g += std::min(pixel.g, 1.0F);
+          sum.b += std::min(pixel.b, 1.0F);
+        }
+      }
+      thumbnail_.pixels[std::size_t{y0 / shrink_} * thumbnail_.width + x0 / shrink_] = {sum.r / count, sum.g / count,
+                                                                                        sum.b / count, 1};
+    }
+  }
 }
 
 }  // namespace relook

@@ -1,5 +1,5 @@
-// The pixels of a run's frames for its page: R, G, B and A of the tiles that a frame does not share with the one
-// before, compressed as in the files, and thumbnails made of them.
+// The pixels of a run's frames for its page: R, G, B and A of the tiles in which a frame differs from the last one that
+// the page holds, compressed as in the files, and thumbnails made of them. Of all frames two are in memory.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -8,30 +8,37 @@
 
 namespace relook {
 
-/// The packed tiles of one frame that differ from those of the frame before.
-struct FramePixels {
-  std::vector<std::size_t> tiles, sizes;  // index, bytes
-  Bytes bytes;                            // of all of them, one after the other
-  Bytes thumbnail;                        // a PNG file
-};
-
 /// Takes the frames of a run in their order.
 class RunPixels {
  public:
-  /// Throws InputError when the file is no frame, or not of the size and channels of those before.
-  [[nodiscard]] FramePixels take(Bytes file, std::string_view name);
-  [[nodiscard]] const FrameTiles& last() const { return last_; }
+  /// Makes a file the current frame. Throws InputError when it is no frame, or not of the size and channels of those
+  /// before.
+  void load(Bytes file, std::string_view name);
+  [[nodiscard]] const FrameTiles& current() const { return current_; }
   /// R, G, B and A, as far as the frames have them. In the order of the packed tiles.
   [[nodiscard]] const std::vector<FrameTiles::Channel>& channels() const { return channels_; }
 
- private:
-  [[nodiscard]] std::vector<Bytes> packed_colors(const FrameTiles& frame) const;
-  void shrink(const std::vector<std::size_t>& tiles);
+  /// Tiles in which the current frame differs from the one that was kept last; all of them before any was.
+  [[nodiscard]] const std::vector<std::size_t>& changed() const { return changed_; }
+  [[nodiscard]] BytesView packed(std::size_t tile) const { return packed_[tile]; }
+  /// Bytes of all packed tiles of the current frame.
+  [[nodiscard]] std::size_t packed_bytes() const;
+  /// From here on changed() compares with the current frame.
+  void keep();
 
-  FrameTiles last_;
+  /// The current frame, small, as a PNG file. Quick when it is asked for with every frame.
+  [[nodiscard]] Bytes thumbnail();
+
+ private:
+  [[nodiscard]] std::vector<Bytes> packed_colors() const;
+  void shrink(std::size_t tile);
+
+  FrameTiles current_;
   std::vector<FrameTiles::Channel> channels_;
-  std::vector<Bytes> packed_;  // of last_, by tile
+  std::vector<Bytes> packed_, kept_;  // by tile; kept_ is empty before the first keep()
+  std::vector<std::size_t> changed_;
   Frame thumbnail_;
+  std::vector<Bytes> shown_;  // packed tiles that the thumbnail shows
   std::uint32_t shrink_ = 1;  // pixels a side that make one of the thumbnail; a power of two, no larger than a tile
 };
 
