@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "help_footer.h"
 #include "values.h"
+#include "version_text.h"
 
 namespace relook {
 namespace {
@@ -362,7 +363,7 @@ std::vector<VerbHelp> command_line_help() {
 
 ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   CLI::App app("relook: replays edits of a scene and recomputes exactly the part of the image that changed", "relook");
-  app.set_version_flag("--version", std::string("relook ") + std::string(program_version()));
+  app.set_version_flag("--version", version_text);
   app.require_subcommand(1);
   Arguments arguments;
   RawTexts raw;

@@ -16,13 +16,15 @@ ExitCode run_check(const Arguments& arguments, Console& console) {
     }
   }
   for (const std::string& finding : report.findings) console.line(finding);
+  for (const std::string& note : report.notes) console.line("note: " + note);
   console.line(cache + ": " + std::string(sentence(report.worst.fault)) + "; " + std::to_string(report.files) +
                " files, " + std::to_string(report.bytes) + " bytes");
   console.json({{"cache", cache},
                 {"sound", report.worst.fault == CacheFault::none},
                 {"files", report.files},
                 {"bytes", report.bytes},
-                {"findings", report.findings}});
+                {"findings", report.findings},
+                {"notes", report.notes}});
   require_sound(report.worst, cache);
   return ExitCode::ok;
 }

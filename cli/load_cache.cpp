@@ -9,7 +9,10 @@ ExitCode exit_code(CacheFault fault) {
     case CacheFault::missing:
     case CacheFault::not_a_cache:
       return ExitCode::bad_input;
+    case CacheFault::unreadable:
+      return ExitCode::io;
     case CacheFault::other_version:
+    case CacheFault::other_arithmetic:
     case CacheFault::other_scene:
     case CacheFault::other_options:
       return ExitCode::cache_mismatch;
@@ -22,9 +25,7 @@ ExitCode exit_code(CacheFault fault) {
 
 void require_sound(const CacheAnswer& answer, const std::string& cache) {
   if (answer.fault == CacheFault::none) return;
-  std::string what(sentence(answer.fault));
-  if (!answer.detail.empty()) what += " (" + answer.detail + ")";
-  throw Error(exit_code(answer.fault), cache, answer.file, what);
+  throw Error(exit_code(answer.fault), cache, answer.file, explanation(answer));
 }
 
 CacheContent load_cache(const std::string& cache) {

@@ -11,7 +11,7 @@
 
 namespace relook {
 
-/// 2 missing or not a cache; 3 it does not fit; 5 damaged.
+/// 2 missing or not a cache; 3 it does not fit; 5 damaged; 6 not permitted to read it.
 [[nodiscard]] ExitCode exit_code(CacheFault fault);
 /// Throws Error unless the answer is `none`.
 void require_sound(const CacheAnswer& answer, const std::string& cache);

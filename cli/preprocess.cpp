@@ -2,6 +2,7 @@
 
 #include "base/memory.h"
 #include "cache/cache.h"
+#include "cache_output.h"
 #include "engine/cached_image.h"
 #include "engine/image_pieces.h"
 #include "engine/render.h"
@@ -24,10 +25,38 @@ void forget_trees(Image& image, double share) {
   }
 }
 
+std::uint64_t bytes_of_files(const Json& manifest) {
+  std::uint64_t bytes = 0;
+  for (const Json& file : manifest["content"]["files"]) bytes += file["bytes"].get<std::uint64_t>();
+  return bytes;
+}
+
+/// What is known of a cache from its manifest.
+Json summary(const std::string& cache, const Json& manifest) {
+  const Json& content = manifest["content"];
+  const Json& camera = content["camera"];
+  return {{"cache", cache},
+          {"scene_hash", content["scene"]},
+          {"camera", camera["name"]},
+          {"resolution", {camera["width"], camera["height"]}},
+          {"objects", content["objects"]},
+          {"lights", content["lights"]},
+          {"bytes", bytes_of_files(manifest)}};
+}
+
+ExitCode say_complete(const std::string& cache, const Json& manifest, Console& console) {
+  console.line(cache + ": complete already, " + std::to_string(bytes_of_files(manifest)) + " bytes; nothing was done");
+  Json result = summary(cache, manifest);
+  result["complete"] = true;
+  console.json(result);
+  return ExitCode::ok;
+}
+
 }  // namespace
 
 ExitCode run_preprocess(const Arguments& arguments, Console& console) {
-  refuse_foreign_folder(arguments.output);
+  if (const std::optional<Json> manifest = finished_cache(arguments, console))
+    return say_complete(arguments.output, *manifest, console);
   std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   console.warn(loaded.warnings);
@@ -41,31 +70,26 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   const std::size_t paths = image.paths.size();
   forget_trees(image, arguments.structures.ray_trees_percent / 100);
   CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash);
+  content.storage = {arguments.structures.ray_trees_percent, arguments.structures.disk_bytes};
   console.check_interrupt();
   if (arguments.structures.disk_bytes) fit_to_disk(content, *arguments.structures.disk_bytes);
-  write_cache(arguments.output, content);
+  write_cache(arguments.output, content, arguments.overwrite ? OldCache::replace : OldCache::keep);
   span.reset();
   console.part_done();
 
   Json manifest;
   require_sound(read_manifest(arguments.output, manifest), arguments.output);
-  std::uint64_t bytes = 0;
-  for (const Json& file : manifest["content"]["files"]) bytes += file["bytes"].get<std::uint64_t>();
   console.line(arguments.output + ": " + std::to_string(content.objects) + " objects, " + std::to_string(paths) +
-               " ray paths, " + std::to_string(bytes) + " bytes, " + std::to_string(stats.render_seconds) + " s");
-  console.json({{"cache", arguments.output},
-                {"scene_hash", content.scene_hash},
-                {"camera", content.camera.name},
-                {"resolution", {content.camera.width, content.camera.height}},
-                {"objects", content.objects},
-                {"lights", content.lights},
-                {"ray_paths", paths},
-                {"bytes", bytes},
-                {"samples_total", stats.counters.samples_total},
-                {"ray_updates", stats.counters.ray_updates},
-                {"shadow_updates", stats.counters.shadow_updates},
-                {"build_seconds", stats.build_seconds},
-                {"render_seconds", stats.render_seconds}});
+               " ray paths, " + std::to_string(bytes_of_files(manifest)) + " bytes, " +
+               std::to_string(stats.render_seconds) + " s");
+  Json result = summary(arguments.output, manifest);
+  result.update({{"ray_paths", paths},
+                 {"samples_total", stats.counters.samples_total},
+                 {"ray_updates", stats.counters.ray_updates},
+                 {"shadow_updates", stats.counters.shadow_updates},
+                 {"build_seconds", stats.build_seconds},
+                 {"render_seconds", stats.render_seconds}});
+  console.json(result);
   return ExitCode::ok;
 }
 

@@ -265,7 +265,7 @@ TEST(Cache, other_folders_are_told_apart) {
   std::filesystem::create_directory(folder / "foreign");
   overwrite(folder / "foreign" / "MANIFEST.json", bytes_of("{\"name\": \"an extension\"}\n"));
   EXPECT_EQ(fault_of(folder / "foreign"), CacheFault::not_a_cache);
-  overwrite(folder / "foreign" / "MANIFEST.json", bytes_of("{\"relook\": \"cache/2\", \"content\": {}}\n"));
+  overwrite(folder / "foreign" / "MANIFEST.json", bytes_of("{\"relook\": \"cache/1\", \"content\": {}}\n"));
   EXPECT_EQ(fault_of(folder / "foreign"), CacheFault::other_version);
 }
 
@@ -370,7 +370,7 @@ TEST(Cache, replaces_a_cache_but_no_other_folder) {
 
   std::filesystem::create_directory(folder / "mine");
   overwrite(folder / "mine" / "thesis.txt", bytes_of("x"));
-  EXPECT_THROW(write_cache(folder / "mine", content), InputError);
+  EXPECT_THROW(write_cache(folder / "mine", content), UsageError);
   EXPECT_TRUE(std::filesystem::exists(folder / "mine" / "thesis.txt"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 2) << "temporary folders remain";
 }
@@ -390,9 +390,9 @@ TEST(Cache, two_writers_of_one_output_leave_one_whole_cache) {
 
 TEST(Cache, every_fault_has_its_own_sentence) {
   std::set<std::string_view> sentences;
-  for (const CacheFault fault :
-       {CacheFault::none, CacheFault::missing, CacheFault::not_a_cache, CacheFault::other_version,
-        CacheFault::other_scene, CacheFault::other_options, CacheFault::truncated, CacheFault::damaged})
+  for (const CacheFault fault : {CacheFault::none, CacheFault::missing, CacheFault::not_a_cache, CacheFault::unreadable,
+                                 CacheFault::other_version, CacheFault::other_arithmetic, CacheFault::other_scene,
+                                 CacheFault::other_options, CacheFault::truncated, CacheFault::damaged})
     EXPECT_TRUE(sentences.insert(sentence(fault)).second) << sentence(fault);
 }
 

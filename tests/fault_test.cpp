@@ -10,6 +10,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "base/json.h"
@@ -133,7 +134,8 @@ TEST_F(Fault, sigterm_during_preprocess_leaves_nothing) {
 TEST_F(Fault, kill_during_preprocess_leaves_a_sound_cache_or_none) {
   make_cache("64x36");
   for (int i = 0; i < 12; ++i) {
-    const pid_t child = start({"preprocess", kScene, "-o", at("c"), "--resolution", "320x180", "--quiet"});
+    const pid_t child =
+        start({"preprocess", kScene, "-o", at("c"), "--resolution", "320x180", "--quiet", "--overwrite"});
     std::this_thread::sleep_for(std::chrono::milliseconds(30 + 40 * i));
     kill(child, SIGKILL);
     wait_for(child);
@@ -175,12 +177,22 @@ TEST_F(Fault, two_replays_of_one_cache_agree_and_leave_it_untouched) {
 }
 
 TEST_F(Fault, two_preprocesses_to_one_output_leave_one_sound_cache) {
-  const pid_t first = start({"preprocess", kScene, "-o", at("c"), "--resolution", "160x90", "--quiet"});
-  const pid_t second = start({"preprocess", kScene, "-o", at("c"), "--resolution", "161x91", "--quiet"});
-  EXPECT_EQ(wait_for(first), 0);
-  EXPECT_EQ(wait_for(second), 0);
-  EXPECT_EQ(relook({"check", at("c"), "--quiet"}).exit_code, 0);
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(at("")), {}), 1) << "temporary folders remain";
+  // The later one finds that it has done the same, or is refused, or asked to replace what the other has written.
+  const auto codes_of = [&](const std::string& second_resolution, const std::vector<std::string>& flags) {
+    std::vector<std::string> one{"preprocess", kScene, "-o", at("c"), "--quiet", "--resolution", "160x90"}, other = one;
+    other.back() = second_resolution;
+    one.insert(one.end(), flags.begin(), flags.end());
+    other.insert(other.end(), flags.begin(), flags.end());
+    const pid_t first = start(one), second = start(other);
+    const std::multiset<int> codes{wait_for(first), wait_for(second)};
+    EXPECT_EQ(relook({"check", at("c"), "--quiet"}).exit_code, 0);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(at("")), {}), 1) << "temporary folders remain";
+    std::filesystem::remove_all(at("c"));
+    return codes;
+  };
+  EXPECT_EQ(codes_of("160x90", {}), (std::multiset<int>{0, 0}));
+  EXPECT_EQ(codes_of("161x91", {}), (std::multiset<int>{0, 1}));
+  EXPECT_EQ(codes_of("161x91", {"--overwrite"}), (std::multiset<int>{0, 0}));
 }
 
 /// Runs the program in an address space of so many kilobytes.
@@ -281,7 +293,11 @@ TEST_F(Fault, a_read_only_cache_is_enough_for_a_replay) {
   std::filesystem::copy(at("c"), at("disk/c"), std::filesystem::copy_options::recursive);
   ASSERT_EQ(mount("tmpfs", at("disk").c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, nullptr), 0);
   EXPECT_EQ(relook({"replay", at("disk/c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
-  EXPECT_EQ(relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "64x36", "--quiet"}).exit_code, 6);
+  EXPECT_EQ(relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "64x36", "--quiet"}).exit_code, 0)
+      << "it is complete";
+  EXPECT_EQ(
+      relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "64x36", "--quiet", "--overwrite"}).exit_code,
+      6);
 }
 
 }  // namespace

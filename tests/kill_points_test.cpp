@@ -151,12 +151,14 @@ TEST_F(KillPoints, preprocess) {
   std::filesystem::create_directory(place);
   for (const bool replaces : {false, true}) {
     if (!replaces) std::filesystem::remove_all(place / "c");
-    const long calls = calls_of(preprocess("place/c"));
+    std::vector<std::string> command = preprocess("place/c");
+    if (replaces) command.push_back("--overwrite");
+    const long calls = calls_of(command);
     for_each_point(
         calls,
         [&](const std::string& fault) {
           if (!replaces) std::filesystem::remove_all(place / "c");
-          const ProgramResult result = run(preprocess("place/c"), fault);
+          const ProgramResult result = run(command, fault);
           expect_sensible(result);
           if (std::filesystem::exists(place / "c")) {
             EXPECT_TRUE(contents(place / "c") == whole);

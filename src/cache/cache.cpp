@@ -1,78 +1,21 @@
 #include "cache/cache.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <functional>
 #include <iterator>
-#include <numeric>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "cache/cache_names.h"
+#include "cache/cache_parts.h"
 #include "cache/image_parts.h"
 #include "cache/manifest.h"
 #include "cache/scene_parts.h"
-#include "cache/staged_folder.h"
 
 namespace relook {
 namespace {
-
-enum class Part : std::uint8_t { look, geometry, textures, frame, paths, trees };
-constexpr std::array<std::string_view, 6> kPartNames{"look.json", "geometry", "textures", "frame", "paths", "trees"};
-
-struct PartFile {
-  Part part = Part::look;
-  std::size_t group = 0;  // of Part::trees
-};
-
-std::vector<PartFile> parts_of(const CacheContent& content) {
-  std::vector<PartFile> parts{{Part::look}, {Part::geometry}, {Part::textures}, {Part::frame}, {Part::paths}};
-  for (std::size_t group = 0; group < cache_group_count(content.camera, content.samples); ++group)
-    parts.push_back({Part::trees, group});
-  return parts;
-}
-
-/// The start of a part's file name; the hash of its bytes follows (look.json has none, to be found by people).
-std::string stem(const PartFile& part) {
-  if (part.part == Part::look) return "look.json";
-  std::string name(kPartNames[static_cast<std::size_t>(part.part)]);
-  if (part.part == Part::trees) {
-    char digits[24];
-    std::snprintf(digits, sizeof digits, "/%05zu", part.group);
-    name += digits;
-  }
-  return name + "-";
-}
-
-Bytes encode(const PartFile& part, const CacheContent& content, const CacheIdentity& identity) {
-  switch (part.part) {
-    case Part::look:
-      return encode_look(content.document);
-    case Part::geometry:
-      return encode_geometry(content.document, identity);
-    case Part::textures:
-      return encode_textures(*content.document.assets, *content.pyramids, identity);
-    case Part::frame:
-      return encode_frame(content, identity);
-    case Part::paths:
-      return encode_paths(content, identity);
-    case Part::trees:
-      return encode_trees(content, part.group, identity);
-  }
-  return {};
-}
-
-CacheFile write_part(const std::filesystem::path& folder, const PartFile& part, const CacheContent& content,
-                     const CacheIdentity& identity) {
-  const Bytes bytes = encode(part, content, identity);
-  CacheFile file{stem(part), bytes.size(), hash128(bytes)};
-  if (part.part != Part::look) file.name += file.hash + ".rlk";
-  write_file(folder / file.name, bytes);
-  return file;
-}
 
 /// Everything that reading has found out so far.
 struct Reading {
@@ -162,7 +105,7 @@ bool is_fault(const Finding& finding) { return finding.answer.fault != CacheFaul
 bool is_loss(const Finding& finding) {
   const bool follows_from_scene =
       finding.part.part == Part::frame || finding.part.part == Part::paths || finding.part.part == Part::trees;
-  return finding.is_lost && follows_from_scene;
+  return finding.is_lost && follows_from_scene && finding.answer.fault != CacheFault::unreadable;
 }
 
 /// What is to be done about losses, and nothing left in `content` of what is lost.
@@ -220,6 +163,7 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
   }
   const Manifest& manifest = reading.manifest;
   CacheContent& content = reading.content;
+  content.storage = manifest.storage;
   content.camera = manifest.camera;
   content.samples = manifest.samples;
   content.max_depth = manifest.max_depth;
@@ -262,6 +206,10 @@ std::string_view sentence(CacheFault fault) {
       return "there is no cache here";
     case CacheFault::not_a_cache:
       return "this is not a relook cache";
+    case CacheFault::unreadable:
+      return "the cache cannot be read";
+    case CacheFault::other_arithmetic:
+      return "the cache holds the bits of another arithmetic; preprocess again";
     case CacheFault::other_version:
       return "the cache was written by another version of relook; preprocess again";
     case CacheFault::other_scene:
@@ -276,111 +224,12 @@ std::string_view sentence(CacheFault fault) {
   return "";
 }
 
-std::string options_hash(const CacheContent& content) {
-  const Json options{{"camera", camera_json(content.camera)},
-                     {"samples", content.samples},
-                     {"max_depth", content.max_depth},
-                     {"shadow_bits", content.shadow_bits}};
-  return hash128(bytes_of(options.dump()));
-}
-
-void refuse_foreign_folder(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return;
-  if (!std::filesystem::is_directory(path, error)) throw InputError(path.string(), "", "exists and is not a folder");
-  if (!std::filesystem::is_empty(path, error) && !looks_like_cache(path))
-    throw InputError(path.string(), "", "exists and is not a cache: not overwritten");
-}
-
-void require_writable(const std::filesystem::path& path) { const StagedFolder removed_again(path); }
-
-namespace {
-
-/// Of a group of tiles.
-struct GroupSize {
-  std::size_t group = 0;
-  std::uint64_t hits = 0, with_hits = 0, without = 0;  // number; bytes of its file
-  [[nodiscard]] std::uint64_t saved() const { return with_hits - std::min(without, with_hits); }
-  /// Hits take about the same time each to find again.
-  [[nodiscard]] double weight() const { return static_cast<double>(hits) / static_cast<double>(saved() + 1); }
-};
-
-GroupSize take_hits(CacheContent& content, const CacheIdentity& identity, std::size_t group,
-                    std::vector<TileTrees>& taken) {
-  GroupSize size{group};
-  size.with_hits = encode_trees(content, group, identity).size();
-  const TileGroup tiles = cache_group(content.camera, content.samples, group);
-  for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
-    TileTrees& trees = content.trees[tile];
-    size.hits += trees.hits.size();
-    taken[tile].first_hit = std::exchange(trees.first_hit, {});
-    taken[tile].hits = std::exchange(trees.hits, {});
-  }
-  size.without = encode_trees(content, group, identity).size();
-  return size;
-}
-
-void put_back_hits(CacheContent& content, std::size_t group, std::vector<TileTrees>& taken) {
-  const TileGroup tiles = cache_group(content.camera, content.samples, group);
-  for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
-    content.trees[tile].first_hit = std::move(taken[tile].first_hit);
-    content.trees[tile].hits = std::move(taken[tile].hits);
-  }
-}
-
-}  // namespace
-
-void fit_to_disk(CacheContent& content, std::uint64_t bytes) {
-  const CacheIdentity identity{content.scene_hash, options_hash(content)};
-  const std::vector<PartFile> parts = parts_of(content);
-  std::vector<std::uint64_t> others(parts.size(), 0);
-  std::vector<GroupSize> groups(cache_group_count(content.camera, content.samples));
-  std::vector<TileTrees> taken(content.trees.size());
-  parallel_for(parts.size(), [&](std::size_t i) {
-    if (parts[i].part == Part::trees)
-      groups[parts[i].group] = take_hits(content, identity, parts[i].group, taken);
-    else
-      others[i] = encode(parts[i], content, identity).size();
-  });
-  constexpr std::uint64_t kManifestBytes = 4096, kManifestFileBytes = 256;  // at most
-  std::uint64_t least =
-      std::accumulate(others.begin(), others.end(), kManifestBytes + kManifestFileBytes * parts.size());
-  for (const GroupSize& group : groups) least += group.without;
-  if (least > bytes)
-    throw ResourceError("--disk", "this cache needs at least " + std::to_string((least + 1023) >> 10) + "K");
-  std::ranges::stable_sort(groups, std::greater(), &GroupSize::weight);
-  std::uint64_t left = bytes - least;
-  for (const GroupSize& group : groups) {
-    if (group.saved() > left) continue;
-    left -= group.saved();
-    put_back_hits(content, group.group, taken);
-  }
-}
-
-void write_cache(const std::filesystem::path& path, const CacheContent& content) {
-  refuse_foreign_folder(path);
-  Manifest manifest;
-  manifest.identity = {content.scene_hash, options_hash(content)};
-  manifest.camera = content.camera;
-  manifest.samples = content.samples;
-  manifest.max_depth = content.max_depth;
-  manifest.shadow_bits = content.shadow_bits;
-  manifest.objects = content.objects;
-  manifest.lights = content.lights;
-
-  StagedFolder folder(path);
-  folder.fill([&] {
-    make_folders(folder.path() / kPartNames[static_cast<std::size_t>(Part::trees)]);
-    const std::vector<PartFile> parts = parts_of(content);
-    manifest.files.resize(parts.size());
-    parallel_for(parts.size(), [&](std::size_t i) {
-      manifest.files[i] = write_part(folder.path(), parts[i], content, manifest.identity);
-    });
-    std::sort(manifest.files.begin(), manifest.files.end(),
-              [](const CacheFile& a, const CacheFile& b) { return a.name < b.name; });
-    write_file(folder.path() / kManifestName, manifest_text(manifest));
-  });
-  folder.publish();
+std::string explanation(const CacheAnswer& answer) {
+  if (answer.fault == CacheFault::unreadable && !answer.detail.empty()) return answer.detail;
+  if (answer.fault == CacheFault::other_arithmetic && !answer.detail.empty())
+    return answer.detail + "; preprocess again";
+  const std::string what(sentence(answer.fault));
+  return answer.detail.empty() ? what : what + " (" + answer.detail + ")";
 }
 
 CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content, CacheLosses* losses,
@@ -396,6 +245,39 @@ CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content,
   return {};
 }
 
+namespace {
+
+/// Everything below a cache that its manifest does not name. Without a manifest nothing is told apart.
+void look_for_strays(const std::filesystem::path& path, const Manifest& manifest, CacheReport& report) {
+  const auto find = [&](const std::string& finding, CacheAnswer answer) {
+    report.findings.push_back(finding);
+    if (report.worst.fault == CacheFault::none) report.worst = std::move(answer);
+  };
+  std::set<std::string> known{std::string(kManifestName)};
+  for (const CacheFile& file : manifest.files) known.insert(file.name);
+  std::error_code error;
+  for (auto entry = std::filesystem::recursive_directory_iterator(path, error);
+       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) continue;
+    const std::string name = entry->path().lexically_relative(path).generic_string();
+    const bool is_file = entry->is_regular_file(ignored);
+    if (is_file && !known.contains(name) && is_system_name(entry->path().filename().string())) {
+      report.notes.push_back(printable(name) + ": left by the system, not of this cache");
+      continue;
+    }
+    ++report.files;
+    report.bytes += is_file ? entry->file_size(ignored) : 0;
+    if (manifest.files.empty() || known.contains(name)) continue;
+    find(printable(name) + ": not a file of this cache",
+         {CacheFault::damaged, printable(name), "not a file of this cache"});
+  }
+  if (error)
+    find("cannot be listed: " + error.message(), {CacheFault::unreadable, "", "cannot be listed: " + error.message()});
+}
+
+}  // namespace
+
 CacheReport check_cache(const std::filesystem::path& path) {
   Reading reading;
   CacheReport report;
@@ -409,32 +291,8 @@ CacheReport check_cache(const std::filesystem::path& path) {
   }
   if (report.worst.fault == CacheFault::missing || report.worst.fault == CacheFault::not_a_cache) return report;
 
-  std::set<std::string> known{std::string(kManifestName)};
-  for (const CacheFile& file : reading.manifest.files) known.insert(file.name);
-  std::error_code error;
-  for (auto entry = std::filesystem::recursive_directory_iterator(path, error);
-       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error)) {
-    if (entry->is_directory(error)) continue;
-    ++report.files;
-    report.bytes += entry->is_regular_file(error) ? entry->file_size(error) : 0;
-    const std::string name = entry->path().lexically_relative(path).generic_string();
-    if (reading.manifest.files.empty() || known.contains(name)) continue;
-    report.findings.push_back(printable(name) + ": not a file of this cache");
-    if (report.worst.fault == CacheFault::none)
-      report.worst = {CacheFault::damaged, printable(name), "not a file of this cache"};
-  }
+  look_for_strays(path, reading.manifest, report);
   return report;
-}
-
-CacheAnswer read_manifest(const std::filesystem::path& path, Json& manifest) {
-  try {
-    Json document;
-    static_cast<void>(load_manifest(path, &document));
-    manifest = std::move(document);
-    return {};
-  } catch (const CacheDamage& damage) {
-    return {damage.fault, damage.what()[0] == '\0' ? "" : std::string(kManifestName), damage.what()};
-  }
 }
 
 }  // namespace relook

@@ -16,6 +16,13 @@
 
 namespace relook {
 
+/// What preprocess was told about how much of the ray trees to store.
+struct StorageOptions {
+  double ray_trees_percent = 100;           // of the samples; the others' hits are left out
+  std::optional<std::uint64_t> disk_bytes;  // of the whole cache, at most
+  bool operator==(const StorageOptions&) const = default;
+};
+
 /// Everything a replay needs. Plain data; the engine turns it into a SceneState and an Image and back.
 struct CacheContent {
   LookDocument document;  // with meshes and encoded images
@@ -28,10 +35,22 @@ struct CacheContent {
   PathTable paths;                               // laid out for `lights` and `shadow_bits`
   std::vector<TileTrees> trees;                  // [tiles]
   std::vector<std::vector<Rgba>> sample_colors;  // [tiles][samples]
+  StorageOptions storage;
 };
 
 /// Why a directory cannot be used as a cache. Each has one sentence.
-enum class CacheFault { none, missing, not_a_cache, other_version, other_scene, other_options, truncated, damaged };
+enum class CacheFault {
+  none,
+  missing,
+  not_a_cache,
+  unreadable,  // may be sound, but may not be opened
+  other_version,
+  other_arithmetic,
+  other_scene,
+  other_options,
+  truncated,
+  damaged
+};
 [[nodiscard]] std::string_view sentence(CacheFault fault);
 
 struct CacheAnswer {
@@ -39,9 +58,8 @@ struct CacheAnswer {
   std::string file;    // which file of the cache, relative
   std::string detail;  // what was looked at: "block hash mismatch in section hits"
 };
-
-/// Throws InputError when something other than a cache or an empty folder is at `path`: it would not be replaced.
-void refuse_foreign_folder(const std::filesystem::path& path);
+/// The sentence and the detail, or the detail alone where it says all.
+[[nodiscard]] std::string explanation(const CacheAnswer& answer);
 
 /// Creates the parents of `path` and, for a moment, a folder beside it: what cannot be written is found out before the
 /// work. Throws IoError, ResourceError.
@@ -51,10 +69,18 @@ void require_writable(const std::filesystem::path& path);
 /// disk), until its cache is no larger than `bytes`. Throws ResourceError that names the least it takes.
 void fit_to_disk(CacheContent& content, std::uint64_t bytes);
 
-/// Writes to a temporary folder beside `path` and publishes by rename; an existing cache at `path` is replaced whole,
-/// an existing folder that is not a cache is refused (InputError). Bytes do not depend on the thread count. Throws
-/// IoError, ResourceError; on failure nothing remains.
-void write_cache(const std::filesystem::path& path, const CacheContent& content);
+/// What becomes of another cache that is at the path of a new one.
+enum class OldCache { replace, keep };
+
+/// Writes to a temporary folder beside `path` and publishes by rename. A cache at `path` is replaced whole or, to be
+/// kept, refused unless it is the very same; anything else there is refused (UsageError), also foreign files in a
+/// cache. Bytes do not depend on the thread count. Throws IoError, ResourceError; on failure nothing remains.
+void write_cache(const std::filesystem::path& path, const CacheContent& content, OldCache old = OldCache::replace);
+
+/// Is the cache at `path` the one that would be written for `wanted`, of which only the scene's hash, the view and the
+/// storage options are looked at, and does every file have its hash? `detail` of other_scene and other_options: what
+/// the cache at hand has otherwise, like "resolution (960x540) and samples (4)".
+[[nodiscard]] CacheAnswer match_cache(const std::filesystem::path& path, const CacheContent& wanted);
 
 /// Damage that can be made good, because what is lost follows from the scene: frame, ray paths, ray trees.
 struct CacheLosses {
@@ -82,7 +108,8 @@ struct CacheUsers {
 struct CacheReport {
   CacheAnswer worst;
   std::vector<std::string> findings;
-  std::uint64_t files = 0, bytes = 0;
+  std::vector<std::string> notes;      // files that systems leave in folders, no fault
+  std::uint64_t files = 0, bytes = 0;  // without those of the notes
 };
 [[nodiscard]] CacheReport check_cache(const std::filesystem::path& path);
 

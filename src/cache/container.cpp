@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "cache files are little-endian");
 
-constexpr std::string_view kMagic = "RLKCACHE";
+constexpr std::string_view kMagic = kContainerMagic;
 constexpr std::size_t kHashDigits = 32, kNameBytes = 24;
 constexpr std::size_t kHeaderBytes = 16 + 2 * kHashDigits, kEntryBytes = kNameBytes + 2 * 4 + 4 * 8;
 constexpr std::uint32_t kMostSections = 4096;

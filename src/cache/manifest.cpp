@@ -1,11 +1,15 @@
 #include "cache/manifest.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "build_hash.h"
 #include "trace/shadow_counter.h"
 
 namespace relook {
@@ -42,39 +46,25 @@ Camera read_camera(const JsonView& view) {
   return camera;
 }
 
-bool is_hash(std::string_view text) {
-  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+Json storage_json(const StorageOptions& storage) {
+  return {{"ray_trees_percent", storage.ray_trees_percent},
+          {"disk_bytes", storage.disk_bytes ? Json(*storage.disk_bytes) : Json()}};
 }
 
-/// Names that write_cache() can have written: nothing that leaves the directory.
-bool is_file_name(std::string_view name) {
-  if (name == "look.json") return true;
-  constexpr std::string_view kSuffix = ".rlk";
-  if (!name.ends_with(kSuffix)) return false;
-  name.remove_suffix(kSuffix.size());
-  const std::size_t dash = name.rfind('-');
-  if (dash == std::string_view::npos || !is_hash(name.substr(dash + 1))) return false;
-  const std::string_view stem = name.substr(0, dash);
-  constexpr std::string_view kTrees = "trees/";
-  if (stem.starts_with(kTrees))
-    return stem.size() > kTrees.size() && stem.find_first_not_of("0123456789", kTrees.size()) == std::string_view::npos;
-  return stem == "geometry" || stem == "textures" || stem == "frame" || stem == "paths";
-}
-
-/// The build, and the processor's instruction set as far as Embree's arithmetic follows it.
-std::string arithmetic() {
-  const char* instructions = "generic";
-#if defined(__x86_64__)
-  instructions = __builtin_cpu_supports("avx2") ? "avx2" : __builtin_cpu_supports("avx") ? "avx" : "sse";
-#endif
-  return std::string(RELOOK_BUILD) + "-" + instructions;
+StorageOptions read_storage(const JsonView& view) {
+  StorageOptions storage;
+  storage.ray_trees_percent = view.at("ray_trees_percent").number(0, 100);
+  const JsonView bytes = view.at("disk_bytes");
+  if (!bytes.value().is_null()) storage.disk_bytes = static_cast<std::uint64_t>(bytes.integer(0, INT64_MAX));
+  return storage;
 }
 
 Json content_json(const Manifest& manifest) {
   Json files = Json::array();
   for (const CacheFile& file : manifest.files)
     files.push_back({{"name", file.name}, {"bytes", file.bytes}, {"hash", file.hash}});
-  return {{"build", arithmetic()},
+  return {{"arithmetic", arithmetic_json(manifest.arithmetic)},
+          {"storage", storage_json(manifest.storage)},
           {"scene", manifest.identity.scene_hash},
           {"options", manifest.identity.options_hash},
           {"camera", camera_json(manifest.camera)},
@@ -87,11 +77,11 @@ Json content_json(const Manifest& manifest) {
 }
 
 Manifest read_content(const JsonView& view) {
-  // Stored hits and colours are the bits of one build's arithmetic: another build would mix them with its own.
-  if (view.at("build").text() != arithmetic())
-    throw CacheDamage(CacheFault::other_version,
-                      "another build of the program, or another kind of processor, wrote it");
   Manifest manifest;
+  manifest.arithmetic = read_arithmetic(view.at("arithmetic"));
+  const std::string difference = arithmetic_difference(manifest.arithmetic);
+  if (!difference.empty()) throw CacheDamage(CacheFault::other_arithmetic, difference);
+  manifest.storage = read_storage(view.at("storage"));
   manifest.identity = {view.at("scene").text(), view.at("options").text()};
   if (!is_hash(manifest.identity.scene_hash)) view.at("scene").fail("not a hash");
   if (!is_hash(manifest.identity.options_hash)) view.at("options").fail("not a hash");
@@ -109,10 +99,18 @@ Manifest read_content(const JsonView& view) {
     CacheFile file{entry.at("name").text(),
                    static_cast<std::uint64_t>(entry.at("bytes").integer(0, std::int64_t{1} << 50)),
                    entry.at("hash").text()};
-    if (!is_file_name(file.name)) entry.at("name").fail("not a file of a cache");
+    if (!is_content_name(file.name)) entry.at("name").fail("not a file of a cache");
     manifest.files.push_back(std::move(file));
   }
   return manifest;
+}
+
+/// Throws CacheDamage{unreadable} when a file is there and may not be opened.
+void require_permitted(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  const int error = errno;
+  if (file >= 0) ::close(file);
+  if (file < 0 && is_refusal(error)) throw CacheDamage(CacheFault::unreadable, refusal_text(error));
 }
 
 bool is_complete_json(std::string_view text) { return text.ends_with("}\n"); }
@@ -155,11 +153,18 @@ std::string manifest_text(const Manifest& manifest) {
   return document.dump(1) + "\n";
 }
 
+bool is_refusal(int error) {
+  return error == EACCES || error == EPERM || error == EMFILE || error == ENFILE || error == ENOMEM;
+}
+
+std::string refusal_text(int error) { return std::string("cannot open: ") + std::strerror(error); }
+
 Manifest load_manifest(const std::filesystem::path& cache, Json* out) {
   std::error_code error;
   const auto kind = std::filesystem::status(cache, error).type();
   if (kind == std::filesystem::file_type::not_found) throw CacheDamage(CacheFault::missing, "");
   const std::filesystem::path path = cache / kManifestName;
+  require_permitted(path);
   if (kind != std::filesystem::file_type::directory || !std::filesystem::exists(path, error))
     throw CacheDamage(CacheFault::not_a_cache, "");
   try {
@@ -180,6 +185,17 @@ Manifest load_manifest(const std::filesystem::path& cache, Json* out) {
   }
 }
 
+bool is_manifest_of_cache(const std::filesystem::path& path) {
+  try {
+    const Bytes bytes = read_file(path, kLargestManifestBytes);
+    const Json document = parse_json(text_of(bytes), path.string());
+    return document.is_object() && document.contains("relook") && document["relook"].is_string() &&
+           document["relook"].get_ref<const std::string&>().starts_with(kFormatPrefix);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 Bytes load_file(const std::filesystem::path& cache, const CacheFile& file) {
   try {
     const std::filesystem::path path = contained_path(cache, file.name, file.name, "");
@@ -192,19 +208,40 @@ Bytes load_file(const std::filesystem::path& cache, const CacheFile& file) {
     check_sound(size == file.bytes, sizes);
     return read_file(path, file.bytes);
   } catch (const InputError& fault) {
+    require_permitted(cache / file.name);
     throw CacheDamage(CacheFault::damaged, fault.what());
   }
 }
 
-bool looks_like_cache(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::path manifest = path / kManifestName;
-  if (!std::filesystem::is_regular_file(manifest, error)) return false;
+Manifest manifest_of(const CacheContent& content) {
+  Manifest manifest;
+  manifest.storage = content.storage;
+  manifest.identity = {content.scene_hash, options_hash(content)};
+  manifest.camera = content.camera;
+  manifest.samples = content.samples;
+  manifest.max_depth = content.max_depth;
+  manifest.shadow_bits = content.shadow_bits;
+  manifest.objects = content.objects;
+  manifest.lights = content.lights;
+  return manifest;
+}
+
+std::string options_hash(const CacheContent& content) {
+  const Json options{{"camera", camera_json(content.camera)},
+                     {"samples", content.samples},
+                     {"max_depth", content.max_depth},
+                     {"shadow_bits", content.shadow_bits}};
+  return hash128(bytes_of(options.dump()));
+}
+
+CacheAnswer read_manifest(const std::filesystem::path& path, Json& manifest) {
   try {
-    const Bytes bytes = read_file(manifest, kLargestManifestBytes);
-    return text_of(bytes).find("\"relook\"") != std::string_view::npos;
-  } catch (const Error&) {
-    return false;
+    Json document;
+    static_cast<void>(load_manifest(path, &document));
+    manifest = std::move(document);
+    return {};
+  } catch (const CacheDamage& damage) {
+    return {damage.fault, damage.what()[0] == '\0' ? "" : std::string(kManifestName), damage.what()};
   }
 }
 

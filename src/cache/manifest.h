@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "base/json.h"
+#include "cache/arithmetic.h"
 #include "cache/cache.h"
+#include "cache/cache_names.h"
 #include "cache/container.h"
 
 namespace relook {
-
-inline constexpr std::string_view kManifestName = "MANIFEST.json";
 
 struct CacheFile {
   std::string name;  // relative: "look.json", "trees/00000-<hash>.rlk"
@@ -21,6 +21,8 @@ struct CacheFile {
 };
 
 struct Manifest {
+  Arithmetic arithmetic = own_arithmetic();
+  StorageOptions storage;
   CacheIdentity identity;
   Camera camera;
   std::uint32_t samples = 1, max_depth = 6, shadow_bits = 0;
@@ -37,7 +39,14 @@ struct Manifest {
 /// Reads one file of a cache and compares it with its entry. Throws CacheDamage.
 [[nodiscard]] Bytes load_file(const std::filesystem::path& cache, const CacheFile& file);
 
-/// True for a directory that is a cache, sound or not: what preprocess may replace.
-[[nodiscard]] bool looks_like_cache(const std::filesystem::path& path);
+/// Everything but the files.
+[[nodiscard]] Manifest manifest_of(const CacheContent& content);
+
+/// Does a file say that it is the manifest of a cache, whatever its version and however damaged the rest?
+[[nodiscard]] bool is_manifest_of_cache(const std::filesystem::path& path);
+
+/// Is errno that of a file that may be sound but was not opened (permissions, too many open files)?
+[[nodiscard]] bool is_refusal(int error);
+[[nodiscard]] std::string refusal_text(int error);
 
 }  // namespace relook

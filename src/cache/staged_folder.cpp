@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "cache/cache_folder.h"
 
 namespace relook {
 namespace {
@@ -19,6 +20,28 @@ constexpr int kMostAttempts = 1000;
 
 std::filesystem::path without_trailing_slash(const std::filesystem::path& path) {
   return path.has_filename() ? path : path.parent_path();
+}
+
+/// Absolute, links followed; empty if no folder can be there.
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  std::error_code ignored;
+  // Absolute first: weakly_canonical leaves a relative path relative when nothing of it is there.
+  const auto final_path =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(without_trailing_slash(path), ignored), ignored);
+  return final_path.has_filename() ? final_path : std::filesystem::path();
+}
+
+/// How the names of temporary folders begin; process and attempt follow.
+std::string temporary_start(const std::filesystem::path& final_path) {
+  return std::string(".").append(final_path.filename().string()) + ".relook-";
+}
+
+/// "PROCESS-ATTEMPT", both numbers: not one that replace_in_two_steps() has set aside, which may be the only copy.
+bool is_temporary_end(std::string_view end) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t dash = end.find('-');
+  if (dash == 0 || dash == std::string_view::npos || dash + 1 == end.size()) return false;
+  return end.find_first_not_of(kDigits) == dash && end.find_first_not_of(kDigits, dash + 1) == std::string_view::npos;
 }
 
 /// A descriptor of a folder with a lock on it; -1 if there is no such folder or somebody else has the lock. Where
@@ -39,15 +62,12 @@ int open_locked(const std::filesystem::path& folder, bool needs_lock) {
 
 }  // namespace
 
-StagedFolder::StagedFolder(const std::filesystem::path& final_path) : given_(without_trailing_slash(final_path)) {
-  std::error_code ignored;
-  // Absolute first: weakly_canonical leaves a relative path relative when nothing of it is there.
-  final_ = std::filesystem::weakly_canonical(std::filesystem::absolute(given_, ignored), ignored);
-  if (final_.empty() || !final_.has_filename()) throw IoError(final_path.string(), "no folder can be written here");
+StagedFolder::StagedFolder(const std::filesystem::path& final_path)
+    : given_(without_trailing_slash(final_path)), final_(resolved(final_path)) {
+  if (final_.empty()) throw IoError(final_path.string(), "no folder can be written here");
   make_folders(final_.parent_path());
-  const std::string start = std::string(".").append(final_.filename().string()) + ".relook-";
-  remove_abandoned(start);
-  const std::string stem = start + std::to_string(getpid()) + "-";
+  remove_abandoned(final_);
+  const std::string stem = temporary_start(final_) + std::to_string(getpid()) + "-";
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
     staged_ = final_.parent_path() / (stem + std::to_string(attempt));
     if (mkdir(staged_.c_str(), 0777) == 0) {
@@ -62,20 +82,21 @@ StagedFolder::StagedFolder(const std::filesystem::path& final_path) : given_(wit
 }
 
 StagedFolder::~StagedFolder() {
-  std::error_code ignored;
-  if (!staged_.empty()) std::filesystem::remove_all(staged_, ignored);
+  if (!staged_.empty()) remove_cache_files(staged_);
   if (lock_ >= 0) ::close(lock_);
 }
 
-void StagedFolder::remove_abandoned(const std::string& start) const {
-  constexpr std::string_view kSetAside = "-old";  // may be the only copy of a cache: see replace_in_two_steps()
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(final_.parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(start) || name.ends_with(kSetAside)) continue;
-    const int lock = open_locked(entry.path(), true);
+void StagedFolder::remove_abandoned(const std::filesystem::path& final_path) {
+  const std::filesystem::path final_one = resolved(final_path);
+  const std::string start = temporary_start(final_one);
+  std::error_code error;
+  std::filesystem::directory_iterator at(final_one.parent_path(), error);
+  for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
+    const std::string name = at->path().filename().string();
+    if (!name.starts_with(start) || !is_temporary_end(std::string_view(name).substr(start.size()))) continue;
+    const int lock = open_locked(at->path(), true);
     if (lock < 0) continue;
-    std::filesystem::remove_all(entry.path(), ignored);
+    remove_cache_files(at->path());
     ::close(lock);
   }
 }
@@ -92,17 +113,22 @@ void StagedFolder::fill(const std::function<void()>& fill) const {
   }
 }
 
-void StagedFolder::publish() {
+void StagedFolder::publish(const std::function<bool()>& may_replace) {
   fill([this] { sync_folder(staged_); });
   int error = 0;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    const bool is_new = rename(staged_.c_str(), final_.c_str()) == 0;
+    if (rename(staged_.c_str(), final_.c_str()) == 0) {
+      staged_.clear();
+      return sync_folder(final_.parent_path());
+    }
     error = errno;
-    const bool is_exchanged = !is_new && (error == ENOTEMPTY || error == EEXIST) &&
-                              renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0;
-    if (is_new) staged_.clear();
-    if (is_new || is_exchanged) return sync_folder(final_.parent_path());
     if (error != ENOTEMPTY && error != EEXIST) break;
+    if (!may_replace()) return;
+    if (renameat2(AT_FDCWD, staged_.c_str(), AT_FDCWD, final_.c_str(), RENAME_EXCHANGE) == 0) {
+      retire_cache(staged_, final_);
+      staged_.clear();
+      return sync_folder(final_.parent_path());
+    }
     error = errno;
     const bool cannot_exchange = error == EINVAL || error == ENOSYS;
     if (cannot_exchange && replace_in_two_steps()) return sync_folder(final_.parent_path());
@@ -114,11 +140,15 @@ void StagedFolder::publish() {
 bool StagedFolder::replace_in_two_steps() {
   const std::filesystem::path aside = staged_.string() + "-old";
   if (rename(final_.c_str(), aside.c_str()) != 0) return false;
-  const bool is_published = rename(staged_.c_str(), final_.c_str()) == 0;
-  if (is_published) staged_.clear();
-  std::error_code ignored;
-  if (is_published || rename(aside.c_str(), final_.c_str()) != 0) std::filesystem::remove_all(aside, ignored);
-  return is_published;
+  if (rename(staged_.c_str(), final_.c_str()) == 0) {
+    staged_.clear();
+    retire_cache(aside, final_);
+    return true;
+  }
+  const bool is_back = rename(aside.c_str(), final_.c_str()) == 0;
+  const bool is_replaced = !is_back && (errno == ENOTEMPTY || errno == EEXIST);  // by another writer meanwhile
+  if (is_replaced) retire_cache(aside, final_);
+  return false;
 }
 
 }  // namespace relook

@@ -1,5 +1,6 @@
-// A folder that is filled under a temporary name beside its final one and appears there whole, or not at all. The
-// temporary folder is locked while its writer lives, so that those of killed writers are told apart and removed.
+// A cache's folder, filled under a temporary name beside its final one: it appears there whole, or not at all. The
+// temporary folder is locked while its writer lives, so that those of killed writers are told apart and removed. Only
+// files of caches are ever removed (cache/cache_folder.h); a folder in which anything else is found stays.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -20,14 +21,18 @@ class StagedFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return staged_; }
   /// Runs `fill`, which writes below path(). Its errors name the final folder as given, not the temporary one.
   void fill(const std::function<void()>& fill) const;
-  /// Moves the folder to its final name. A folder already there is exchanged with it in one step, then removed, so that
-  /// the final name always has the old folder or the new one. Throws IoError.
-  void publish();
+  /// Moves the folder to its final name. A folder already there that is not empty is exchanged with it in one step, if
+  /// `may_replace` says so, so that the final name always has the old folder or the new one; then the old cache's files
+  /// are removed and all else moves into the new folder. If `may_replace` says no, what is there stays and the new
+  /// folder goes. Throws IoError, and what `may_replace` throws.
+  void publish(const std::function<bool()>& may_replace);
+
+  /// Removes what killed writers of a folder have left beside it, where that is permitted.
+  static void remove_abandoned(const std::filesystem::path& final_path);
 
  private:
   /// For file systems that cannot exchange two names: for a moment there is no folder under the final one.
   bool replace_in_two_steps();
-  void remove_abandoned(const std::string& start) const;
 
   std::filesystem::path given_, final_, staged_;
   int lock_ = -1;  // descriptor of the temporary folder

@@ -1,0 +1,14 @@
+#include "version_text.h"
+
+#include "cache/arithmetic.h"
+#include "cache/container.h"
+#include "engine/report.h"
+
+namespace relook {
+
+std::string version_text() {
+  return "relook " + std::string(program_version()) + "\n" + arithmetic_text(own_arithmetic()) + "\ncache format " +
+         std::to_string(kCacheFormat);
+}
+
+}  // namespace relook

@@ -1,0 +1,76 @@
+#include "cache/arithmetic.h"
+
+#if __has_include(<gnu/libc-version.h>)
+#include <gnu/libc-version.h>
+#endif
+
+#include "base/error.h"
+#include "trace/embree_version.h"
+
+namespace relook {
+namespace {
+
+std::string libc_version() {
+#if defined(__GLIBC__)
+  return std::string("glibc ") + gnu_get_libc_version();
+#else
+  return "unknown";
+#endif
+}
+
+/// The tracer opens Embree with at most AVX2, so that machines with AVX-512 run the same kernels as others; which of
+/// them follows from more flags than the one they are called by. glibc has variants with fused multiply-add of libm's
+/// functions, for AVX2 and FMA4.
+std::string instruction_set() {
+#if defined(__x86_64__)
+  const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+                        __builtin_cpu_supports("lzcnt") && __builtin_cpu_supports("f16c") &&
+                        __builtin_cpu_supports("rdrnd");
+  if (has_avx2) return "avx2";
+  if (__builtin_cpu_supports("avx")) return __builtin_cpu_supports("fma4") ? "avx+fma4" : "avx";
+  return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";
+#else
+  return "generic";
+#endif
+}
+
+}  // namespace
+
+const Arithmetic& own_arithmetic() {
+  static const Arithmetic own{kArithmeticVersion, embree_version(), libc_version(), instruction_set()};
+  return own;
+}
+
+Json arithmetic_json(const Arithmetic& arithmetic) {
+  return {{"version", arithmetic.version},
+          {"embree", arithmetic.embree},
+          {"libc", arithmetic.libc},
+          {"instructions", arithmetic.instructions}};
+}
+
+Arithmetic read_arithmetic(const JsonView& view) {
+  return {static_cast<std::uint32_t>(view.at("version").integer(0, UINT32_MAX)), view.at("embree").text(),
+          view.at("libc").text(), view.at("instructions").text()};
+}
+
+std::string arithmetic_difference(const Arithmetic& written, const Arithmetic& own) {
+  std::string differences;
+  const auto compare = [&](const char* what, const std::string& theirs, const std::string& ours) {
+    if (theirs == ours) return;
+    differences += (differences.empty() ? "written with " : "; with ") + std::string(what) + printable(theirs) +
+                   ", this is " + ours;
+  };
+  compare("arithmetic ", std::to_string(written.version), std::to_string(own.version));
+  compare("Embree ", written.embree, own.embree);
+  compare("", written.libc, own.libc);
+  compare("instructions ", written.instructions, own.instructions);
+  return differences;
+}
+
+std::string arithmetic_text(const Arithmetic& arithmetic) {
+  return "arithmetic " + std::to_string(arithmetic.version) + ", Embree " + arithmetic.embree + ", " + arithmetic.libc +
+         ", " + arithmetic.instructions;
+}
+
+}  // namespace relook

@@ -1,0 +1,49 @@
+// What decides the bits of a pixel beside the scene. Caches are exchangeable between programs and machines that agree
+// in all of it; a cache of another arithmetic is refused, since stored hits and colours would be mixed with other bits.
+#pragma once
+#include <cfloat>
+#include <cstdint>
+#include <string>
+
+#include "base/json.h"
+
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__) || \
+    defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error "flags like -ffast-math change the bits of pixels"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error "floats are computed as floats: no x87 arithmetic"
+#endif
+
+namespace relook {
+
+/// Raised by hand with every change to the bits of anything that a cache stores or a frame shows: any pixel, colour of
+/// a sample, hit, ray path, shadow counter, displaced vertex or texel of a pyramid, for any scene, edit or option. Then
+/// tests/golden_bits.txt is written anew. Not raised for what leaves all of these as they were: speed, messages,
+/// comments, new features that no scene could use before. No macro tells of contraction (-ffp-contract=off in
+/// CMakeLists.txt); the golden test does.
+inline constexpr std::uint32_t kArithmeticVersion = 1;
+
+struct Arithmetic {
+  std::uint32_t version = 0;  // kArithmeticVersion
+  std::string embree;         // "3.13.5": of the library that was loaded
+  std::string libc;           // "glibc 2.36": its libm computes what is uniform in a scene
+  std::string instructions;   // as far as Embree and libm choose their code by them: "avx2"
+  bool operator==(const Arithmetic&) const = default;
+};
+
+/// Of this program on this machine.
+[[nodiscard]] const Arithmetic& own_arithmetic();
+
+[[nodiscard]] Json arithmetic_json(const Arithmetic& arithmetic);
+/// Throws InputError.
+[[nodiscard]] Arithmetic read_arithmetic(const JsonView& view);
+
+/// In which something written differs from this program: "written with Embree 3.12.1, this is 3.13.5"; "" if in
+/// nothing.
+[[nodiscard]] std::string arithmetic_difference(const Arithmetic& written, const Arithmetic& own = own_arithmetic());
+
+/// "arithmetic 1, Embree 3.13.5, glibc 2.36, avx2"
+[[nodiscard]] std::string arithmetic_text(const Arithmetic& arithmetic);
+
+}  // namespace relook

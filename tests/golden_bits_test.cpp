@@ -1,0 +1,197 @@
+// The bits of frames, ray paths and hits, over all programs: test scenes under tests/golden_edits.json, the project's
+// own scenes under its journals, with one and several samples and shadow bits. tests/golden_bits.txt has a hash of
+// each, and names the arithmetic (cache/arithmetic.h) under which they hold.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "base/files.h"
+#include "base/hash.h"
+#include "cache/arithmetic.h"
+#include "engine/replay.h"
+#include "run_program.h"
+#include "scene/camera.h"
+#include "scene/import.h"
+#include "test_scenes.h"
+
+namespace relook {
+namespace {
+
+const std::filesystem::path kProject = RELOOK_SOURCE_DIR;
+const std::filesystem::path kTable = kProject / "tests/golden_bits.txt";
+constexpr const char* kHowToWrite =
+    "RELOOK_GOLDEN_BITS=write relook_tests --gtest_filter='GoldenBits.*' writes tests/golden_bits.txt anew";
+
+template <class T>
+void append(Bytes& bytes, std::span<const T> values) {
+  const BytesView view = std::as_bytes(values);
+  bytes.insert(bytes.end(), view.begin(), view.end());
+}
+
+std::string short_hash(const Bytes& bytes) { return hash128(bytes).substr(0, 16); }
+
+/// Of the frame with the colours of its samples, and of their paths and hits.
+std::string bits_of(const Image& image) {
+  Bytes colors, trees;
+  append(colors, std::span<const Rgba>(image.frame.pixels));
+  for (const std::vector<Rgba>& tile : image.sample_colors) append(colors, std::span<const Rgba>(tile));
+  for (const TileTrees& tile : image.trees) {
+    for (const PathId path : tile.paths) append(trees, image.paths.words(path));
+    append(trees, std::span<const Hit>(tile.hits));
+  }
+  return short_hash(colors) + " " + short_hash(trees);
+}
+
+/// "NAME" to hashes. Names are in order.
+using Bits = std::map<std::string, std::string>;
+
+/// The bits of a scene after preprocess and after each frame of a journal.
+void take_bits(const std::string& name, SceneState state, ViewOptions view, const Journal& journal, Bits& bits) {
+  const std::string start =
+      name + ", " + std::to_string(view.samples) + " samples, " + std::to_string(view.shadow_bits) + " shadow bits: ";
+  int frames = 0;
+  const auto note = [&](const Image& image, const std::string& what) {
+    char number[16];
+    std::snprintf(number, sizeof number, "%03d ", frames++);
+    bits[start + number + what] = bits_of(image);
+  };
+  Image image = preprocessed(state.scene(), view);
+  note(image, "preprocess");
+  Replayer replayer(std::move(state), std::move(image));
+  const std::filesystem::path folder = journal.path.parent_path();
+  for (const JournalStep& step : journal.steps) {
+    for (const Edit& edit : frames_of(step)) {
+      if (step.drag.empty())
+        replayer.step(edit, journal.file, folder);
+      else
+        replayer.drag(edit, journal.file, folder);
+      note(replayer.image(), step.name);
+    }
+    if (step.drag.empty()) continue;
+    replayer.release();
+    note(replayer.image(), step.name + ", released");
+  }
+}
+
+SceneState scene_of_file(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height) {
+  LookDocument document = make_look_document(import_gltf(file));
+  const Camera camera = choose_camera(document, "", width, height);
+  return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
+}
+
+constexpr ViewOptions kViews[] = {{1, 6, 0}, {4, 6, 2}};
+
+Bits bits_of_all_programs() {
+  Bits bits;
+  const Journal edits = read_journal(kProject / "tests/golden_edits.json");
+  for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study})
+    for (const ViewOptions& view : kViews)
+      take_bits(test_scene_name(scene), test_scene(scene, 96 / view.samples, 72 / view.samples), view, edits, bits);
+  const Journal table1 = read_journal(kProject / "journals/table1.json");
+  for (const ViewOptions& view : kViews)
+    take_bits("scenes/spheres",
+              scene_of_file(kProject / "scenes/spheres/spheres.gltf", 128 / view.samples, 72 / view.samples), view,
+              table1, bits);
+  return bits;
+}
+
+/// The garden is generated. Python may count with another libm: then it is another scene, and not in the table.
+void take_bits_of_garden(const Bits& golden, Bits& bits) {
+  const ScratchFolder folder("golden");
+  const ProgramResult made = run_program(
+      {"python3", (kProject / "scenes/generate.py").string(), "garden", (folder / "garden").string(), "20"});
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  const std::string scene = short_hash(read_file(folder / "garden/garden.gltf"));
+  const std::string name = "scenes/garden of 20 leaves";
+  if (const auto known = golden.find(name); known != golden.end() && known->second != scene) {
+    std::printf("SKIPPED: this Python makes another garden; its bits are NOT tested\n");
+    for (const auto& [row, hashes] : golden)
+      if (row.starts_with(name)) bits[row] = hashes;
+    return;
+  }
+  bits[name] = scene;
+  take_bits(name, scene_of_file(folder / "garden/garden.gltf", 96, 96), kViews[0],
+            read_journal(kProject / "journals/table3.json"), bits);
+}
+
+struct Table {
+  Arithmetic arithmetic;
+  Bits bits;
+};
+
+constexpr std::string_view kHead = "arithmetic ";
+constexpr std::size_t kGap = 2;
+
+Table read_table() {
+  Table table;
+  std::ifstream file(kTable);
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(kHead)) {
+      const Json head = parse_json(line.substr(kHead.size()), "golden_bits.txt");
+      table.arithmetic = read_arithmetic(JsonView(head, "golden_bits.txt"));
+    } else if (const std::size_t gap = line.find("  "); gap != std::string::npos) {
+      table.bits[line.substr(gap + kGap)] = line.substr(0, gap);
+    }
+  }
+  return table;
+}
+
+void write_table(const Bits& bits) {
+  std::ostringstream text;
+  text << kHead << arithmetic_json(own_arithmetic()).dump() << "\n";
+  for (const auto& [name, hashes] : bits) text << hashes << "  " << name << "\n";
+  write_file(kTable, text.str());
+}
+
+bool is_asked_to_write() {
+  const char* const wanted = std::getenv("RELOOK_GOLDEN_BITS");
+  return wanted != nullptr && std::string(wanted) == "write";
+}
+
+/// Rows whose hashes are not those of the table; of rows that the table lacks only if `missing_too`.
+std::vector<std::string> different_rows(const Bits& golden, const Bits& bits, bool missing_too) {
+  std::vector<std::string> rows;
+  for (const auto& [name, hashes] : bits) {
+    const auto known = golden.find(name);
+    if (known == golden.end() ? missing_too : known->second != hashes) rows.push_back(name);
+  }
+  if (missing_too)
+    for (const auto& row : golden)
+      if (!bits.contains(row.first)) rows.push_back(row.first);
+  return rows;
+}
+
+std::string first_of(const std::vector<std::string>& rows) {
+  std::string text = std::to_string(rows.size()) + " rows differ";
+  for (std::size_t i = 0; i < std::min<std::size_t>(rows.size(), 10); ++i) text += "\n  " + rows[i];
+  return text;
+}
+
+TEST(GoldenBits, are_those_of_the_table) {
+  const Table golden = read_table();
+  const bool is_writing = is_asked_to_write();
+  const Arithmetic& own = own_arithmetic();
+  if (!is_writing) {
+    ASSERT_EQ(golden.arithmetic.version, own.version) << "kArithmeticVersion was raised: " << kHowToWrite;
+    if (golden.arithmetic != own)
+      GTEST_SKIP() << "SKIPPED: the table was " << arithmetic_difference(golden.arithmetic)
+                   << "; the bits of this machine are NOT tested";
+  }
+  Bits bits = bits_of_all_programs();
+  take_bits_of_garden(golden.bits, bits);
+  const bool is_comparable = golden.arithmetic == own;
+  const std::vector<std::string> different = different_rows(golden.bits, bits, !is_writing);
+  if (is_comparable && !different.empty())
+    FAIL() << first_of(different)
+           << "\nWhere pixels, paths or hits have other bits than before, raise kArithmeticVersion in "
+              "src/cache/arithmetic.h, so that older caches are refused. Then, and when only rows are new:\n"
+           << kHowToWrite;
+  if (is_writing) write_table(bits);
+}
+
+}  // namespace
+}  // namespace relook
