@@ -14,7 +14,6 @@
 #include "report/own_file.h"
 #include "report/progress_file.h"
 #include "report/report_file.h"
-#include "shim_tmp.h"
 
 namespace relook {
 namespace {
