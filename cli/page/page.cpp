@@ -39,6 +39,7 @@ std::string policy(const Page& page) {
 
 std::string page_text(const Page& page) {
   std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  text += "<meta name=\"generator\" content=\"relook\">\n";
   text += "<meta http-equiv=\"Content-Security-Policy\" content=\"" + policy(page) + "\">\n";
   text += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   text += "<meta name=\"referrer\" content=\"no-referrer\">\n<link rel=\"icon\" href=\"data:,\">\n";
