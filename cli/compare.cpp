@@ -1,53 +1,25 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdio>
 
 #include "compare_inputs.h"
 #include "compare_page.h"
+#include "compare_text.h"
 #include "engine/run_table.h"
 #include "verbs.h"
 
 namespace relook {
 namespace {
 
-std::string short_number(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.4g", value);
-  return digits;
-}
-
-std::string text(const std::string& name, const FrameDifference& difference) {
-  return name + ": " + std::to_string(difference.pixels_different) + " of " +
-         std::to_string(difference.pixels_compared) + " pixels differ, max error " +
-         short_number(difference.max_error) + ", RMS error " + short_number(difference.rms_error);
-}
-
-std::string text(const Rgba& pixel) {
-  return short_number(double{pixel.r}) + " " + short_number(double{pixel.g}) + " " + short_number(double{pixel.b}) +
-         " " + short_number(double{pixel.a});
-}
-
-std::string text(const std::string& name, const FrameComparison& comparison) {
-  std::string line = text(name, comparison.difference);
-  if (comparison.psnr) line += ", PSNR " + short_number(*comparison.psnr) + " dB";
-  if (comparison.worst && comparison.ssim) line += ", SSIM " + short_number(*comparison.ssim);
-  if (comparison.flip) line += ", FLIP " + short_number(comparison.flip->mean);
-  if (const auto& worst = comparison.worst)
-    line += ", worst at " + std::to_string(worst->x) + "," + std::to_string(worst->y) + ": " + text(worst->a) +
-            " and " + text(worst->b);
-  if (comparison.verdict == Verdict::within) line += "; within the thresholds";
-  return line;
-}
-
 Json pair_json(const std::string& a, const std::string& b, const PairComparison& pair) {
   Json frames = Json::object();
   for (const auto& [name, comparison] : pair.frames) frames[printable(name)] = comparison_json(comparison);
   Json missing = Json::array();
   for (const std::string& name : pair.missing) missing.push_back(printable(name));
+  Json total = difference_json(pair.total);
+  total["layers_different"] = pair.layers_different;
   return {{"a", a},
           {"b", b},
-          {"total", difference_json(pair.total)},
+          {"total", std::move(total)},
           {"frames", std::move(frames)},
           {"missing", std::move(missing)},
           {"verdict", verdict_name(pair.verdict)}};
@@ -55,8 +27,12 @@ Json pair_json(const std::string& a, const std::string& b, const PairComparison&
 
 void print_pair(const PairComparison& pair, const std::string& prefix, bool are_folders, Console& console) {
   for (const std::string& name : pair.missing) console.line(prefix + printable(name) + ": in one run only");
-  for (const auto& [name, comparison] : pair.frames) console.line(text(prefix + printable(name), comparison));
-  if (are_folders) console.line(text(prefix + "total", pair.total));
+  for (const auto& [name, comparison] : pair.frames)
+    for (const std::string& line : comparison_text(prefix + printable(name), comparison)) console.line(line);
+  if (!are_folders) return;
+  const std::string layers =
+      pair.layers_different > 0 ? ", in " + std::to_string(pair.layers_different) + " layers" : "";
+  console.line(difference_text(prefix + "total", pair.total) + layers);
 }
 
 void warn_of_pair(const PairComparison& pair, const Arguments& arguments, const std::string& b, Console& console) {
@@ -182,6 +158,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   }
   console.part_done();
   Json result = pairs.size() == 1 ? pairs[0] : Json{{"pairs", pairs}, {"verdict", verdict_name(verdict)}};
+  result["relook"] = "compare/1";
   if (are_folders) {
     if (const std::optional<RunTable> table = read_table(inputs, console)) {
       print_table(*table, console);

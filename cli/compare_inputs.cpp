@@ -5,7 +5,8 @@
 #include <iterator>
 
 #include "base/error.h"
-#include "engine/frame_file.h"
+#include "compare_text.h"
+#include "engine/file_comparison.h"
 #include "engine/preview.h"
 
 namespace relook {
@@ -29,25 +30,27 @@ Pictures pictures_of(const Frame& a, const Frame& b, const FrameComparison& comp
   return {encode_png(a), encode_png(b), encode_png(errors)};
 }
 
+FileComparison compared_files(const std::filesystem::path& a, const std::filesystem::path& b,
+                              const Arguments& arguments) {
+  const ExrFile first(read_file(a), a.string()), second(read_file(b), b.string());
+  return compare_exr_files(first, second, arguments.thresholds, !arguments.exact_only);
+}
+
 void add_frame(PairComparison& pair, std::string name, FrameComparison comparison) {
   comparison.flip_errors = {};
   pair.total += comparison.difference;
+  pair.layers_different += layers_different(comparison);
   pair.verdict = std::max(pair.verdict, comparison.verdict);
   pair.frames.emplace_back(std::move(name), std::move(comparison));
 }
 
 void compare_two(const std::string& name, const std::filesystem::path& a, const std::filesystem::path& b,
                  const Arguments& arguments, PairComparison& pair) {
-  const Frame first = decode_exr(a), second = decode_exr(b);
-  if (first.width != second.width || first.height != second.height)
-    throw InputError(b.string(), "",
-                     std::to_string(second.width) + "x" + std::to_string(second.height) + " pixels, not the " +
-                         std::to_string(first.width) + "x" + std::to_string(first.height) + " of " + a.string());
-  FrameComparison comparison = compare_closely(first, second, arguments.thresholds, !arguments.exact_only);
+  FileComparison files = compared_files(a, b, arguments);
   const bool has_page = !arguments.html.empty() || !arguments.output.empty();
-  if (has_page && comparison.worst && pair.pictures.size() < kMostPictures)
-    pair.pictures[name] = pictures_of(first, second, comparison);
-  add_frame(pair, name, std::move(comparison));
+  if (has_page && files.comparison.worst && pair.pictures.size() < kMostPictures)
+    pair.pictures[name] = pictures_of(files.a, files.b, files.comparison);
+  add_frame(pair, name, std::move(files.comparison));
 }
 
 }  // namespace

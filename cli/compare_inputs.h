@@ -33,8 +33,9 @@ struct PairComparison {
   std::vector<std::pair<std::string, FrameComparison>> frames;  // by name, without flip_errors
   std::map<std::string, Pictures> pictures;                     // by name, of the first kMostPictures that differ
   std::vector<std::string> missing;                             // in one of the two folders only
-  FrameDifference total;
-  Verdict verdict = Verdict::equal;  // the worst of all frames; failure when one is missing
+  FrameDifference total;                                        // of the frames' own figures
+  std::size_t layers_different = 0;                             // of all frames
+  Verdict verdict = Verdict::equal;                             // the worst of all frames; failure when one is missing
 };
 
 /// Throws InputError for files that are no frames, or frames of two sizes.

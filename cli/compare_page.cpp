@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/error.h"
+#include "compare_text.h"
 #include "engine/report.h"
 #include "page/page.h"
 
@@ -13,11 +13,7 @@ namespace {
 
 std::string html(std::string_view text) { return escaped_html(printable(text)); }
 
-std::string number(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.4g", value);
-  return digits;
-}
+std::string number(double value) { return short_number(value); }
 
 std::string number(const std::optional<double>& value) { return value ? number(*value) : "\u2013"; }
 
@@ -34,7 +30,7 @@ std::string frame_row(const std::string& name, const FrameComparison& comparison
                     cell(std::to_string(difference.pixels_different)) + cell(number(difference.max_error)) +
                     cell(number(difference.rms_error)) + cell(number(comparison.psnr)) + cell(number(comparison.ssim));
   std::optional<double> mean, largest;
-  if (!comparison.worst) mean = largest = 0;
+  if (comparison.has_picture && !comparison.worst) mean = largest = 0;
   if (comparison.flip) mean = comparison.flip->mean, largest = comparison.flip->largest;
   row += cell(number(mean)) + cell(number(largest));
   std::string place;
@@ -46,6 +42,37 @@ std::string frame_row(const std::string& name, const FrameComparison& comparison
     }
   }
   return row + cell(place, "name") + "</tr>\n";
+}
+
+std::string layer_row(const std::string& name, const LayerDifference& layer) {
+  const std::string verdict(verdict_name(layer.verdict));
+  std::optional<double> max_error, rms_error;
+  if (layer.has_quantities) max_error = layer.figures.max_error, rms_error = layer.rms_error;
+  return "<tr>" + head(name) + cell(layer.part, "name") + cell(layer.level) + cell(layer.layer, "name") +
+         cell(verdict, verdict.c_str()) + cell(std::to_string(layer.figures.pixels_different)) +
+         cell(number(max_error)) + cell(number(rms_error)) + cell(std::to_string(layer.pixels_other_ids)) +
+         cell(first_difference(layer), "name") + "</tr>\n";
+}
+
+/// Rows for the layers that differ; what is equal is only counted.
+std::string layer_table(const PairComparison& pair) {
+  std::string rows;
+  std::size_t equal = 0;
+  for (const auto& [name, comparison] : pair.frames) {
+    for (const LayerDifference& layer : comparison.layers) {
+      if (layer.verdict == Verdict::equal)
+        ++equal;
+      else
+        rows += layer_row(name, layer);
+    }
+  }
+  const std::string count = "<p>Equal layers, of all parts of all frames: " + std::to_string(equal) + "</p>\n";
+  if (rows.empty()) return count;
+  std::string heads;
+  for (const char* name : {"frame", "part", "level", "layer", "verdict", "pixels different", "max error", "RMS error",
+                           "pixels with other ids", "first difference"})
+    heads += head(name);
+  return "<h3>Layers that differ</h3>\n<table>\n<tr>" + heads + "</tr>\n" + rows + "</table>\n" + count;
 }
 
 std::string figure(const Bytes& png, std::string_view caption) {
@@ -89,7 +116,7 @@ void ComparePage::add_pair(const std::string& b, const PairComparison& pair) {
   for (const auto& [name, comparison] : pair.frames) pairs_ += frame_row(name, comparison);
   for (const std::string& name : pair.missing)
     pairs_ += "<tr>" + head(name) + cell("in one only", "failure") + "</tr>\n";
-  pairs_ += "</table>\n";
+  pairs_ += "</table>\n" + layer_table(pair);
   for (const auto& [name, pictures] : pair.pictures)
     pairs_ += "<h3>" + html(name) + "</h3>\n" + figure(pictures.a, a_) + figure(pictures.b, b) +
               figure(pictures.errors, "errors, black: none, white: largest") + "\n";

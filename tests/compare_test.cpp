@@ -63,6 +63,7 @@ TEST_F(CompareFrames, thresholds_decide_the_exit_code) {
 
 TEST_F(CompareFrames, results_are_json_on_stdout_or_in_a_file) {
   const Json printed = parse_json(compare({at("a.exr"), at("b.exr"), "--json"}).output, "stdout");
+  EXPECT_EQ(printed["relook"], "compare/1");
   EXPECT_EQ(printed["verdict"], "failure");
   EXPECT_EQ(printed["total"]["pixels_different"], 1);
   EXPECT_EQ(printed["frames"]["b.exr"]["worst_pixel"]["x"], 3);
@@ -89,8 +90,10 @@ TEST_F(CompareFrames, the_page_is_whole_and_takes_names_as_text) {
   std::filesystem::copy(at("b.exr"), folder_ / "two" / hostile);
   EXPECT_EQ(compare({at("one"), at("two"), "--html", at("page.html")}).exit_code, 10);
   const std::string text = page("page.html");
+  EXPECT_NE(text.find("<meta charset=\"utf-8\">\n<meta name=\"generator\" content=\"relook\">\n"), std::string::npos);
   EXPECT_EQ(text.find("<img src=x"), std::string::npos);
-  EXPECT_NE(text.find("&lt;img src=x onerror=alert(1)&gt;&amp;&quot;&#39;.exr"), std::string::npos) << text.substr(0, 3000);
+  EXPECT_NE(text.find("&lt;img src=x onerror=alert(1)&gt;&amp;&quot;&#39;.exr"), std::string::npos)
+      << text.substr(0, 3000);
   EXPECT_NE(text.find("Content-Security-Policy\" content=\"default-src 'none'"), std::string::npos);
   EXPECT_EQ(text.find("<script"), std::string::npos);
   std::size_t pictures = 0;
@@ -107,6 +110,7 @@ TEST_F(CompareFrames, the_page_is_whole_and_takes_names_as_text) {
 TEST_F(CompareFrames, several_frames_are_compared_with_the_first) {
   const Json result = parse_json(compare({at("a.exr"), at("a.exr"), at("b.exr"), "--json"}).output, "stdout");
   ASSERT_EQ(result["pairs"].size(), 2U);
+  EXPECT_EQ(result["relook"], "compare/1");
   EXPECT_EQ(result["pairs"][0]["verdict"], "equal");
   EXPECT_EQ(result["pairs"][1]["verdict"], "failure");
   EXPECT_EQ(result["verdict"], "failure");

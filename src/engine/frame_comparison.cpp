@@ -29,32 +29,12 @@ double pixel_error(const Rgba& a, const Rgba& b) {
   return largest;
 }
 
-struct Limits {
-  double percent;
-  std::optional<double> hard, flip;
-};
-
-bool is_exceeded(const FrameComparison& comparison, const Limits& limits, std::uint64_t above) {
+ErrorFigures figures_of(const FrameComparison& comparison) {
   const FrameDifference& difference = comparison.difference;
-  if (difference.pixels_different == 0) return false;
-  const bool has_many =
-      static_cast<double>(above) > limits.percent / 100 * static_cast<double>(difference.pixels_compared);
-  const bool has_hard = limits.hard && difference.max_error > *limits.hard;
-  const bool looks_different = limits.flip && comparison.flip && comparison.flip->mean > *limits.flip;
-  return has_many || has_hard || looks_different || !std::isfinite(difference.max_error);
-}
-
-bool warns(const Thresholds& thresholds) {
-  return thresholds.warn || thresholds.warn_percent || thresholds.hard_warn || thresholds.warn_flip;
-}
-
-Verdict verdict_of(const FrameComparison& comparison, const Thresholds& thresholds) {
-  if (comparison.difference.pixels_different == 0) return Verdict::equal;
-  const Limits fail{thresholds.fail_percent, thresholds.hard_fail, thresholds.fail_flip};
-  if (is_exceeded(comparison, fail, comparison.pixels_above_fail)) return Verdict::failure;
-  const Limits warn{thresholds.warn_percent.value_or(0), thresholds.hard_warn, thresholds.warn_flip};
-  if (warns(thresholds) && is_exceeded(comparison, warn, comparison.pixels_above_warn)) return Verdict::warning;
-  return Verdict::within;
+  ErrorFigures figures{difference.pixels_compared, difference.pixels_different, comparison.pixels_above_fail,
+                       comparison.pixels_above_warn, difference.max_error};
+  if (comparison.flip) figures.mean_flip = comparison.flip->mean;
+  return figures;
 }
 
 void visit_pixels(const Frame& a, const Frame& b, const Thresholds& thresholds, FrameComparison& comparison) {
@@ -64,10 +44,10 @@ void visit_pixels(const Frame& a, const Frame& b, const Thresholds& thresholds, 
     comparison.not_finite_b += is_finite(second) ? 0 : 1;
     if (std::memcmp(&first, &second, sizeof first) == 0) continue;
     const double error = pixel_error(first, second);
-    comparison.pixels_above_fail += !thresholds.fail || error > *thresholds.fail ? 1 : 0;
-    comparison.pixels_above_warn += !thresholds.warn || error > *thresholds.warn ? 1 : 0;
+    comparison.pixels_above_fail += thresholds.counts_as_failure(error) ? 1 : 0;
+    comparison.pixels_above_warn += thresholds.counts_as_warning(error) ? 1 : 0;
     if (!comparison.worst || error > comparison.worst->error)
-      comparison.worst = WorstPixel{static_cast<std::uint32_t>(i % a.width), static_cast<std::uint32_t>(i / a.width),
+      comparison.worst = WorstPixel{static_cast<std::int32_t>(i % a.width), static_cast<std::int32_t>(i / a.width),
                                     first, second, error};
   }
 }
@@ -98,7 +78,7 @@ Json worst_json(const std::optional<WorstPixel>& worst) {
 }
 
 Json flip_json(const FrameComparison& comparison) {
-  if (comparison.difference.pixels_different == 0) return {{"mean", 0}, {"max", 0}};
+  if (comparison.has_picture && !comparison.worst) return {{"mean", 0}, {"max", 0}};
   if (!comparison.flip) return nullptr;
   const FlipSummary& flip = *comparison.flip;
   return {{"mean", flip.mean},
@@ -109,11 +89,6 @@ Json flip_json(const FrameComparison& comparison) {
 }
 
 }  // namespace
-
-std::string_view verdict_name(Verdict verdict) {
-  constexpr std::array<std::string_view, 4> kNames{"equal", "within", "warning", "failure"};
-  return kNames[static_cast<std::size_t>(verdict)];
-}
 
 FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds, bool looks) {
   FrameComparison comparison;
@@ -129,7 +104,7 @@ FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds
       comparison.flip_errors = std::move(flip->errors);
     }
   }
-  comparison.verdict = verdict_of(comparison, thresholds);
+  comparison.verdict = verdict_of(figures_of(comparison), thresholds);
   return comparison;
 }
 
@@ -143,6 +118,10 @@ Json comparison_json(const FrameComparison& comparison) {
   json["pixels_above_fail"] = comparison.pixels_above_fail;
   json["pixels_above_warn"] = comparison.pixels_above_warn;
   json["verdict"] = verdict_name(comparison.verdict);
+  json["first_difference"] =
+      comparison.first_difference.empty() ? Json(nullptr) : Json(printable(comparison.first_difference));
+  json["layers"] = Json::array();
+  for (const LayerDifference& layer : comparison.layers) json["layers"].push_back(layer_json(layer));
   return json;
 }
 

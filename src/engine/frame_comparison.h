@@ -2,33 +2,21 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "base/json.h"
 #include "engine/compare.h"
 #include "engine/flip.h"
 #include "engine/image.h"
+#include "engine/layer_comparison.h"
+#include "engine/thresholds.h"
 
 namespace relook {
 
-/// What may differ; without any, nothing may. A pixel's error is the largest of its channels. Differences that are not
-/// finite are above every threshold and in no percentage.
-struct Thresholds {
-  std::optional<double> fail = std::nullopt;       // errors above it count; none: any other bits count
-  double fail_percent = 0;                         // of the pixels may count
-  std::optional<double> hard_fail = std::nullopt;  // no error above it
-  std::optional<double> fail_flip = std::nullopt;  // no mean FLIP above it
-  std::optional<double> warn = std::nullopt, warn_percent = std::nullopt;
-  std::optional<double> hard_warn = std::nullopt, warn_flip = std::nullopt;
-};
-
-enum class Verdict : std::uint8_t { equal, within, warning, failure };  // ordered: the worst counts
-[[nodiscard]] std::string_view verdict_name(Verdict verdict);
-
 /// The first pixel in row order with the largest error.
 struct WorstPixel {
-  std::uint32_t x = 0, y = 0;
+  std::int32_t x = 0, y = 0;  // from the upper left corner of the display window
   Rgba a, b;
   double error = 0;  // infinite when not finite; 0 when only bits differ, as in 0 and -0
 };
@@ -46,14 +34,21 @@ struct FrameComparison {
   std::optional<FlipSummary> flip;                   // a is the reference
   std::vector<float> flip_errors;                    // [height * width], or empty
   std::uint64_t pixels_above_fail = 0, pixels_above_warn = 0;
-  Verdict verdict = Verdict::equal;
+  Verdict verdict = Verdict::equal;  // on all of the file
+
+  // Of files (engine/file_comparison.h):
+  bool has_picture = true;              // without, the figures above are those of the layer `own_layer`
+  std::vector<LayerDifference> layers;  // of all parts
+  std::size_t own_layer = 0;            // the picture's; without one, the first that differs, or the first
+  std::string first_difference;         // "channel depth.Z"; "" when equal
 };
 
 /// Requires: frames of one size. `looks`: also PSNR, SSIM and FLIP, for frames that differ.
 [[nodiscard]] FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds, bool looks);
 
-/// difference_json() with psnr, ssim, flip, worst_pixel, not_finite, pixels_above_fail, verdict. Channels that are not
-/// finite are "nan", "inf" or "-inf". Equal frames have psnr null (infinite), ssim 1 and flip 0.
+/// difference_json() with psnr, ssim, flip, worst_pixel, not_finite, pixels_above_fail, verdict, first_difference (null
+/// when equal) and layers. Channels that are not finite are "nan", "inf" or "-inf". Equal frames have psnr null
+/// (infinite), ssim 1 and flip 0.
 [[nodiscard]] Json comparison_json(const FrameComparison& comparison);
 
 }  // namespace relook

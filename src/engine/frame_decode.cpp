@@ -1,53 +1,23 @@
-// Reads frames to compare: any flat OpenEXR image with R, G, B and perhaps A. The header is checked before pixels are
+// Reads R, G, B and perhaps A of the first part of any flat OpenEXR image. The header is checked before pixels are
 // allocated; everything OpenEXR throws becomes one InputError.
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 
-#include <algorithm>
-#include <cstring>
-#include <limits>
 #include <string>
 
 #include "base/error.h"
+#include "engine/exr_file.h"
 #include "engine/frame_file.h"
+#include "engine/memory_stream.h"
 
 namespace relook {
 namespace {
 
-constexpr std::int64_t kLargestSide = 65536;
-constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
-
-class MemoryStream : public Imf::IStream {
- public:
-  explicit MemoryStream(BytesView bytes) : Imf::IStream("frame"), bytes_(bytes) {}
-
-  bool read(char out[], int count) override {
-    if (count < 0 || static_cast<std::uint64_t>(count) > bytes_.size() - position_)
-      throw std::runtime_error("the file is cut short");
-    std::memcpy(out, bytes_.data() + position_, static_cast<std::size_t>(count));
-    position_ += static_cast<std::uint64_t>(count);
-    return position_ < bytes_.size();
-  }
-  std::uint64_t tellg() override { return position_; }
-  void seekg(std::uint64_t position) override {
-    if (position > bytes_.size()) throw std::runtime_error("the file is cut short");
-    position_ = position;
-  }
-  void clear() override {}
-
- private:
-  BytesView bytes_;
-  std::uint64_t position_ = 0;  // <= bytes_.size()
-};
-
 Imath::Box2i checked_window(const Imf::InputFile& input, std::string_view file) {
   const Imath::Box2i window = input.header().dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width < 1 || height < 1 || width > kLargestSide || height > kLargestSide || width * height > kMostPixels)
+  if (!is_read_size(std::int64_t{window.max.x} - window.min.x + 1, std::int64_t{window.max.y} - window.min.y + 1))
     throw InputError(file, "dataWindow", "an image this large is not read");
   for (const char* name : {"R", "G", "B"}) {
     const Imf::Channel* channel = input.header().channels().findChannel(name);

@@ -1,0 +1,24 @@
+// What `relook compare` says of frames: lines for people.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/frame_comparison.h"
+
+namespace relook {
+
+/// Four digits.
+[[nodiscard]] std::string short_number(double value);
+
+/// "NAME: 3 of 1024 pixels differ, max error 0.25, RMS error 0.001".
+[[nodiscard]] std::string difference_text(const std::string& name, const FrameDifference& difference);
+
+/// A line for the frame and one for each further layer that differs.
+[[nodiscard]] std::vector<std::string> comparison_text(const std::string& name, const FrameComparison& comparison);
+
+/// ", ids of 3 pixels differ, only in the first: A, ..."; "" without anything of that.
+[[nodiscard]] std::string beyond_figures(const LayerDifference& layer);
+
+[[nodiscard]] std::size_t layers_different(const FrameComparison& comparison);
+
+}  // namespace relook
