@@ -30,11 +30,11 @@ std::vector<ParameterSet> chosen_parameters(SceneState& state, const std::vector
 }
 
 /// The journals of the command line, their names distinct.
-std::vector<Journal> read_journals(const Arguments& arguments) {
+std::vector<Journal> read_journals(const Arguments& arguments, const Console& console) {
   std::vector<Journal> journals;
   std::set<std::string> names;
   for (std::size_t i = 1; i < arguments.inputs.size(); ++i) {
-    journals.push_back(read_journal(arguments.inputs[i]));
+    journals.push_back(read_journal(arguments.inputs[i], [&] { console.check_interrupt(); }));
     check_steps(arguments, journals.back());
     if (!names.insert(journals.back().name).second)
       throw UsageError("two journals are called \"" + journals.back().name + "\": their runs would share a folder");
@@ -78,7 +78,7 @@ std::uint64_t samples_in(const Image& image, const std::vector<std::size_t>& til
 ExitCode run_replay(const Arguments& arguments, Console& console) {
   if (arguments.structures.memory_bytes) give_back_large_blocks();
   const std::string& cache = arguments.inputs[0];
-  const std::vector<Journal> journals = read_journals(arguments);
+  const std::vector<Journal> journals = read_journals(arguments, console);
   const std::shared_ptr<const DisplayView> view = display_view_of_environment();
   const bool has_several = journals.size() > 1;
   std::vector<std::filesystem::path> folders;
@@ -109,7 +109,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   reading.reset();
   std::uint64_t pixels_different = 0;
   std::optional<TraceScope> checking(std::in_place, console.trace(), "check journals");
-  for (const Journal& journal : journals) check_journal(*opened.state, journal);
+  for (const Journal& journal : journals) console.warn(check_journal(*opened.state, journal));
   checking.reset();
   Json runs = Json::array();
   for (std::size_t i = 0; i < journals.size(); ++i) {
