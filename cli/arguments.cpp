@@ -151,7 +151,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   CLI::App& render = *app.add_subcommand("render", "Render a scene, edited by a journal perhaps");
   add_inputs(render, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
   add_output(render, arguments, "OpenEXR frame to write")->required();
-  render.add_option("--journal", arguments.journal, "Edit the scene by this journal first");
+  render.add_option("--journal", arguments.journal, "Edit the scene by this journal first; -: standard input");
   render.add_option("--step", arguments.step, "Last step to apply; all")
       ->check(CLI::Range(0, 1000000))
       ->needs("--journal");
@@ -169,7 +169,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
                         "Most disk for the cache, like 20G: ray trees are left out where they are worth the least");
 
   CLI::App& replay = *app.add_subcommand("replay", "Replay journals against a cache: a frame per step and a report");
-  add_inputs(replay, arguments, "CACHE JOURNAL", "Cache folder, then journals", 2, kMostJournals);
+  add_inputs(replay, arguments, "CACHE JOURNAL", "Cache folder, then journals; -: standard input", 2, kMostJournals);
   add_output(replay, arguments, "Run folder to write")->required();
   replay.add_flag("--verify{100}", raw.verify, "Compare with a full render after each step; =PERCENT of the tiles");
   replay.add_flag("--baseline", arguments.baseline, "Measure one full render for the report");
@@ -218,7 +218,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_journal(app, arguments, raw);
 
   CLI::App& plan = *app.add_subcommand("plan", "Say what each step of a replay will cost, without replaying");
-  add_inputs(plan, arguments, "CACHE JOURNAL", "Cache folder and journal", 2, 3);
+  add_inputs(plan, arguments, "CACHE JOURNAL", "Cache folder, and journal or -", 2, 3);
 
   CLI::App& blame = *app.add_subcommand("blame", "Say which steps of a run changed a pixel, and through what");
   add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);

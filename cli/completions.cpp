@@ -1,6 +1,4 @@
 // Completions for shells, made from the command line's own description.
-#include <cstdio>
-
 #include "verbs.h"
 
 namespace relook {
@@ -126,11 +124,11 @@ std::string fish(const std::vector<VerbHelp>& verbs) {
 
 }  // namespace
 
-ExitCode run_completions(const Arguments& arguments, Console&) {
+ExitCode run_completions(const Arguments& arguments, Console& console) {
   const std::vector<VerbHelp> verbs = command_line_help();
   const std::string& shell = arguments.inputs[0];
   const std::string script = shell == "bash" ? bash(verbs) : shell == "zsh" ? zsh(verbs) : fish(verbs);
-  std::fputs(script.c_str(), stdout);
+  console.print(script);
   return ExitCode::ok;
 }
 

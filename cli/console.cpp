@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 
 #include "base/error.h"
@@ -12,7 +13,25 @@
 namespace relook {
 namespace {
 
-void print(std::FILE* stream, std::string_view text) { std::fwrite(text.data(), 1, text.size(), stream); }
+void print_error(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
+
+std::string_view environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// Whether a terminal can go back to the start of a line.
+bool is_dumb_terminal() { return environment("TERM").empty() || environment("TERM") == "dumb"; }
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  lines.push_back(text);
+  return lines;
+}
 
 std::string bar(int percent) {
   constexpr int kCells = 30;
@@ -27,11 +46,12 @@ std::string bar(int percent) {
 Console::Console(const Arguments& arguments, const Interrupt& interrupt)
     : interrupt_(interrupt),
       style_(arguments.quiet ? ProgressStyle::none : arguments.progress),
+      has_escapes_(environment("NO_COLOR").empty()),
       quiet_(arguments.quiet),
       json_(arguments.json),
       logs_json_(arguments.log_json),
       trace_(arguments.trace) {
-  is_bar_ = style_ == ProgressStyle::automatic && !logs_json_ && isatty(STDERR_FILENO) != 0;
+  is_bar_ = style_ == ProgressStyle::automatic && !logs_json_ && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal();
   if (style_ == ProgressStyle::automatic && !is_bar_) style_ = ProgressStyle::plain;
   if (style_ == ProgressStyle::plain && logs_json_) style_ = ProgressStyle::json;
 }
@@ -46,8 +66,9 @@ Progress Console::stage(std::string name) {
 
 void Console::end_stage() {
   const std::lock_guard lock(mutex_);
-  if (bar_is_open_) print(stderr, "\r\x1b[K");
-  bar_is_open_ = false;
+  if (bar_width_ == 0) return;
+  print_error(has_escapes_ ? "\r\x1b[K" : "\r" + std::string(bar_width_, ' ') + "\r");
+  bar_width_ = 0;
 }
 
 void Console::show(const std::string& stage, double done) {
@@ -66,13 +87,18 @@ void Console::show(const std::string& stage, double done) {
   shown_percent_ = percent;
   const std::string share = std::to_string(percent);
   if (is_bar_) {
-    bar_is_open_ = true;
-    print(stderr, std::string("\r").append(bar(percent)).append(" " + share + " % " + stage + "\x1b[K"));
+    show_bar(bar(percent) + " " + share + " % " + stage);
   } else if (style_ == ProgressStyle::json) {
     show_json("stage", stage, percent);
   } else {
-    print(stderr, stage + ": " + share + " %\n");
+    print_error(stage + ": " + share + " %\n");
   }
+}
+
+void Console::show_bar(const std::string& text) {
+  const std::size_t rest = bar_width_ > text.size() ? bar_width_ - text.size() : 0;
+  print_error("\r" + text + (has_escapes_ ? "\x1b[K" : std::string(rest, ' ')));
+  bar_width_ = text.size() + (has_escapes_ ? 0 : rest);
 }
 
 void Console::show_json(const char* key, std::string_view what, int percent) const {
@@ -80,15 +106,26 @@ void Console::show_json(const char* key, std::string_view what, int percent) con
   if (logs_json_)
     log("info", std::move(progress));
   else
-    print(stderr, progress.dump() + "\n");
+    print_error(progress.dump() + "\n");
 }
 
-void Console::line(std::string_view text) const {
-  if (!quiet_ && !json_) print(stdout, std::string(text) + "\n");
+void Console::line(std::string_view text) {
+  if (!quiet_ && !json_) output_.print(std::string(text) + "\n");
 }
 
-void Console::json(const Json& result) const {
-  if (json_) print(stdout, result.dump(2) + "\n");
+void Console::log_line(std::string_view text) {
+  if (quiet_) return;
+  end_stage();
+  if (logs_json_)
+    log("info", {{"message", printable(text)}});
+  else if (json_ || StandardOutput::is_pipe())
+    print_error(std::string(text) + "\n");
+  else
+    output_.print(std::string(text) + "\n");
+}
+
+void Console::json(const Json& result) {
+  if (json_) output_.print(result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void Console::warn(const std::vector<std::string>& warnings) {
@@ -98,17 +135,22 @@ void Console::warn(const std::vector<std::string>& warnings) {
     if (logs_json_)
       log("warning", {{"message", printable(warning)}});
     else
-      print(stderr, "relook: warning: " + printable(warning) + "\n");
+      print_error("relook: warning: " + printable(warning) + "\n");
   }
 }
 
 void Console::error(ExitCode code, std::string_view what) {
   end_stage();
-  if (style_ == ProgressStyle::openjd) say("openjd_fail", what);
-  if (logs_json_)
-    log("error", {{"message", printable(what)}, {"exit_code", static_cast<int>(code)}});
-  else
-    print(stderr, "relook: " + std::string(what) + "\n");
+  const std::vector<std::string_view> lines = lines_of(what);
+  const std::size_t more = lines.size() - 1;
+  const std::string others = more == 0 ? "" : "; " + std::to_string(more) + (more == 1 ? " more line" : " more lines");
+  if (style_ == ProgressStyle::openjd) say("openjd_fail", std::string(lines.front()) + others);
+  for (const std::string_view line : lines) {
+    if (logs_json_)
+      log("error", {{"message", printable(line)}, {"exit_code", static_cast<int>(code)}});
+    else
+      print_error("relook: " + std::string(line) + "\n");
+  }
 }
 
 void Console::part(double begin, double end, std::string_view what) {
@@ -140,9 +182,10 @@ void Console::show_whole(double done) {
 
 /// One line, at once: who reads it may be a pipe.
 void Console::say(std::string_view key, std::string_view value) {
-  std::FILE* const stream = json_ ? stderr : stdout;
-  print(stream, std::string(key) + ": " + printable(value) + "\n");
-  std::fflush(stream);
+  const std::string line = std::string(key) + ": " + printable(value) + "\n";
+  if (json_) return print_error(line);
+  output_.print(line);
+  output_.flush();
 }
 
 void Console::log(std::string_view level, Json members) const {
@@ -153,7 +196,7 @@ void Console::log(std::string_view level, Json members) const {
   std::strftime(time, sizeof time, "%Y-%m-%dT%H:%M:%SZ", &utc);
   members["time"] = time;
   members["level"] = level;
-  print(stderr, members.dump() + "\n");
+  print_error(members.dump() + "\n");
 }
 
 }  // namespace relook

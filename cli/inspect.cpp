@@ -1,5 +1,6 @@
 #include <filesystem>
 
+#include "base/standard_input.h"
 #include "cache/cache.h"
 #include "inspect_journal.h"
 #include "load_cache.h"
@@ -14,6 +15,7 @@ enum class Kind : std::uint8_t { scene, cache, journal, run };
 
 /// What the input is, by what it contains.
 Kind kind_of(const std::filesystem::path& path) {
+  if (path == kStandardInput) return Kind::journal;
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
     if (std::filesystem::exists(path / "MANIFEST.json", error)) return Kind::cache;
@@ -124,7 +126,7 @@ void print_look(const Arguments& arguments, Kind kind, Console& console) {
   } else {
     look = load_cache(input).document.look;
   }
-  std::puts(look.dump(2).c_str());
+  console.print(look.dump(2) + "\n");
 }
 
 }  // namespace

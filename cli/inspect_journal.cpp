@@ -65,11 +65,11 @@ void print_step(const Json& entry, const std::string& label, Console& console) {
 }  // namespace
 
 void inspect_journal(const Arguments& arguments, Console& console) {
-  const Journal journal = read_journal(arguments.inputs[0]);
+  const Journal journal = read_journal(arguments.inputs[0], [&] { console.check_interrupt(); });
   std::optional<SceneState> state;
   if (!arguments.scene.empty()) {
     state.emplace(open_state(arguments, console));
-    check_journal(*state, journal);
+    console.warn(check_journal(*state, journal));
   }
   Json steps = Json::array();
   for (std::size_t i = 0; i < journal.steps.size(); ++i) {

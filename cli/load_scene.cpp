@@ -32,14 +32,16 @@ std::string content_hash(const std::string& path, const LookDocument& document) 
   return digests;
 }
 
-LookDocument patched(LookDocument document, const std::string& patch_path, std::vector<std::filesystem::path>& files) {
-  const Edit edit = read_patch(patch_path);
-  for (const std::string& name : files_of(edit))
-    files.push_back(std::filesystem::path(patch_path).parent_path() / name);
+/// `patch_path`: where `patch` was read.
+LookDocument patched(LookDocument document, std::string_view patch, const std::filesystem::path& patch_path,
+                     std::vector<std::filesystem::path>& files) {
+  const std::string file = patch_path.string();
+  const Edit edit = parse_patch(patch, file);
+  for (const std::string& name : files_of(edit)) files.push_back(patch_path.parent_path() / name);
   Camera unused;
   unused.width = unused.height = 1;
   SceneState state(std::move(document), unused, std::make_shared<PyramidStore>());
-  apply_edit(state, edit, patch_path, std::filesystem::path(patch_path).parent_path());
+  apply_edit(state, edit, file, patch_path.parent_path());
   return std::move(state.editable_document());
 }
 
@@ -67,9 +69,11 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
   loaded.warnings = imported.warnings;
   loaded.files = imported.files;
   loaded.document = make_look_document(std::move(imported));
-  if (!view.look_patch.empty()) loaded.document = patched(std::move(loaded.document), view.look_patch, loaded.files);
+  const bool has_patch = !view.look_patch.empty();
+  const Bytes patch = has_patch ? read_input(view.look_patch) : Bytes();
+  if (has_patch) loaded.document = patched(std::move(loaded.document), text_of(patch), input_name(view.look_patch), loaded.files);
   std::string digests = content_hash(path, loaded.document);
-  if (!view.look_patch.empty()) digests += hash128(read_file(view.look_patch));
+  if (has_patch) digests += hash128(patch);
   if (view.auto_lights) digests += "lights auto";
   loaded.hash = hash128(bytes_of(digests));
   return loaded;

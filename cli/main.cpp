@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "outputs.h"
 #include "scene/image_library.h"
+#include "standard_streams.h"
 #include "verbs.h"
 
 namespace relook {
@@ -40,11 +41,6 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
   return ExitCode::usage;
 }
 
-/// A large result is written piece by piece, so that the last flush alone may succeed.
-void require_printed() {
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw IoError("standard output", "cannot be written");
-}
-
 /// The exit code of `work`, or of what it threw, after report(code, sentence).
 template <class Work, class Report>
 int guarded(const Work& work, const Report& report) {
@@ -72,9 +68,10 @@ ExitCode run(const Arguments& arguments) {
   set_thread_count(arguments.threads);
   const int code = guarded(
       [&] {
+        require_one_standard_input(arguments);
         check_outputs(arguments);
         const ExitCode result = run_verb(arguments, console);
-        require_printed();
+        console.finish();
         return result;
       },
       report);
@@ -91,6 +88,7 @@ ExitCode run(const Arguments& arguments) {
 }  // namespace relook
 
 int main(int argc, char** argv) {
+  relook::open_closed_descriptors();
   relook::limit_image_library_threads();
   relook::set_float_mode();
   const auto print_error = [](relook::ExitCode, const char* what) { std::fprintf(stderr, "relook: %s\n", what); };
@@ -98,8 +96,9 @@ int main(int argc, char** argv) {
   const int code = relook::guarded(
       [&] {
         parsed = relook::parse_command_line(argc, argv);
-        std::fputs(parsed.text.c_str(), stdout);
-        relook::require_printed();
+        relook::StandardOutput output;
+        output.print(parsed.text);
+        output.finish();
         return relook::ExitCode::ok;
       },
       print_error);

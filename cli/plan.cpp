@@ -39,14 +39,14 @@ void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
 
 ExitCode run_plan(const Arguments& arguments, Console& console) {
   const std::string& cache = arguments.inputs[0];
-  const Journal journal = read_journal(arguments.inputs[1]);
+  const Journal journal = read_journal(arguments.inputs[1], [&] { console.check_interrupt(); });
   const CacheContent content = load_mended_cache(cache);
   const ViewOptions view{content.samples, content.max_depth, content.shadow_bits};
   {
     LookDocument document = content.document;
     document.assets = std::make_shared<Assets>(*document.assets);
     SceneState state(std::move(document), content.camera, content.pyramids);
-    check_journal(state, journal);
+    console.warn(check_journal(state, journal));
   }
   const Plan plan =
       plan_replay(content.document, content.camera, content.pyramids, view, journal, console.stage("planning"));

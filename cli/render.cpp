@@ -19,12 +19,12 @@ namespace {
 /// The scene as edited by steps 1..last, and where the frame's header says it comes from: as the last frame of a replay
 /// has it. `before_last` is called when that is about to change the frame.
 void apply_journal(SceneState& state, const Journal& journal, const std::optional<std::uint32_t>& last, FrameMeta& meta,
-                   const std::function<void()>& before_last) {
+                   const std::function<void()>& before_last, Console& console) {
   if (last && *last > journal.steps.size())
     throw UsageError("--step: " + std::to_string(*last) + " is beyond the " + std::to_string(journal.steps.size()) +
                      " steps of " + journal.file);
   const std::size_t count = last ? *last : journal.steps.size();
-  check_journal(state, journal);
+  console.warn(check_journal(state, journal));
   ChangeClass change = ChangeClass::base;
   for (std::size_t i = 0; i < count; ++i) {
     const std::span<const Edit> frames = frames_of(journal.steps[i]);
@@ -56,7 +56,7 @@ Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& 
 
 ExitCode run_render(const Arguments& arguments, Console& console) {
   std::optional<Journal> journal;
-  if (!arguments.journal.empty()) journal = read_journal(arguments.journal);
+  if (!arguments.journal.empty()) journal = read_journal(arguments.journal, [&] { console.check_interrupt(); });
   if (journal) require_not_outputs(arguments, files_of(*journal), "a file of the journal");
   std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
@@ -69,7 +69,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
     if (arguments.layers) before = render(loaded.state->scene(), arguments.view.sampling, ignored);
   };
   if (journal) span.emplace(console.trace(), "apply journal");
-  if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before);
+  if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before, console);
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   span.emplace(console.trace(), "render");
   RenderStats stats;
@@ -79,6 +79,8 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   const Bytes bytes = encoded(arguments, *loaded.state, frame, before, meta, console);
   console.check_interrupt();
   write_file(arguments.output, bytes);
+  const std::uint64_t clipped = arguments.float_frames ? 0 : clipped_pixels(frame);
+  if (clipped > 0) console.warn({arguments.output + ": " + clipping_sentence(clipped)});
   span.reset();
   console.part_done();
 

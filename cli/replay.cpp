@@ -32,11 +32,11 @@ std::vector<ParameterSet> chosen_parameters(SceneState& state, const std::vector
 }
 
 /// The journals of the command line, their names distinct.
-std::vector<Journal> read_journals(const Arguments& arguments) {
+std::vector<Journal> read_journals(const Arguments& arguments, const Console& console) {
   std::vector<Journal> journals;
   std::set<std::string> names;
   for (std::size_t i = 1; i < arguments.inputs.size(); ++i) {
-    journals.push_back(read_journal(arguments.inputs[i]));
+    journals.push_back(read_journal(arguments.inputs[i], [&] { console.check_interrupt(); }));
     check_steps(arguments, journals.back());
     if (!names.insert(journals.back().name).second)
       throw UsageError("two journals are called \"" + journals.back().name + "\": their runs would share a folder");
@@ -129,7 +129,7 @@ class ReplayCommand {
     require_fitting(arguments, opened_);
     facts_ = {opened_.scene_hash, cache_sizes(manifest), damage, samples_in(opened_.image, opened_.losses.tiles)};
     const TraceScope checking = console.span("check journals");
-    for (const Journal& journal : journals) check_journal(*opened_.state, journal);
+    for (const Journal& journal : journals) console.warn(check_journal(*opened_.state, journal));
   }
 
   /// The number of pixels that --verify found different.
@@ -168,7 +168,7 @@ class ReplayCommand {
 ExitCode run_replay(const Arguments& arguments, Console& console) {
   if (arguments.structures.memory_bytes) give_back_large_blocks();
   const std::string& cache = arguments.inputs[0];
-  const std::vector<Journal> journals = read_journals(arguments);
+  const std::vector<Journal> journals = read_journals(arguments, console);
   const std::shared_ptr<const DisplayView> view = display_view_of_environment();
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);

@@ -69,6 +69,29 @@ TEST(FrameFile, half_clamps_finite_values_and_keeps_the_others) {
   EXPECT_TRUE(std::isnan(back.pixels[1].b));
 }
 
+TEST(FrameFile, pixels_beyond_half_are_counted_tile_by_tile) {
+  Frame frame = gradient_frame();
+  EXPECT_EQ(clipped_pixels(frame), 0U);
+  frame.pixels[0] = Rgba(1e5F, -1e9F, 0, 1);
+  frame.pixels[1] = Rgba(65504, -65504, INFINITY, NAN);
+  frame.pixels[149] = Rgba(0, 0, 65505, 1);
+  frame.pixels[kWidth * 69 + 149] = Rgba(0, -1e5F, 0, 1);
+  FrameEncoder encoder(kWidth, kHeight, PixelFormat::half);
+  encoder.update(frame);
+  EXPECT_EQ(clipped_pixels(frame), 3U);
+  EXPECT_EQ(encoder.clipped_pixels(), 3U);
+  const std::vector<std::uint32_t> changed{0, kWidth * 69 + 3};
+  frame.pixels[changed[0]] = frame.pixels[149] = Rgba(1, 1, 1, 1);  // 149: another tile, not announced
+  frame.pixels[changed[1]] = Rgba(1, 1, 7e4F, 1);
+  encoder.update(frame, ChangedPixels(changed, kWidth));
+  EXPECT_EQ(encoder.clipped_pixels(), 3U);
+  encoder.update(frame);
+  EXPECT_EQ(encoder.clipped_pixels(), 2U);
+  FrameEncoder whole(kWidth, kHeight, PixelFormat::float32);
+  whole.update(frame);
+  EXPECT_EQ(whole.clipped_pixels(), 0U);
+}
+
 TEST(FrameFile, bytes_depend_on_nothing_but_frame_and_meta) {
   const Frame frame = gradient_frame();
   set_thread_count(1);

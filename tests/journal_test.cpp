@@ -92,9 +92,8 @@ TEST_F(JournalFile, an_empty_journal_is_fine) {
   EXPECT_TRUE(read(R"({"relook": "journal/1", "steps": []})").steps.empty());
 }
 
-TEST_F(JournalFile, reads_a_bare_patch) {
-  write_file(path_, R"([{"op": "remove", "path": "/nodes/A"}])");
-  const Edit edit = read_patch(path_);
+TEST(LookPatch, is_a_bare_patch) {
+  const Edit edit = parse_patch(R"([{"op": "remove", "path": "/nodes/A"}])", "p.json");
   ASSERT_EQ(edit.size(), 1U);
   EXPECT_EQ(edit[0].where, "/0");
 }
@@ -141,6 +140,58 @@ TEST_F(JournalFile, refuses_operations_that_are_not_rfc_6902) {
   EXPECT_EQ(refusal(R"([{"edit": [{"op": "remove", "path": "/a~2"}]}])"),
             "/steps/0/edit/0/path: \"~\" must be followed by 0 or 1");
   EXPECT_EQ(refusal(R"([{"edit": [{"op": "remove", "path": 3}]}])"), "/steps/0/edit/0/path: must be a string");
+}
+
+TEST_F(JournalFile, names_every_wrong_step) {
+  const std::string line = ": a step needs \"edit\", \"wedge\", or \"select\" and \"drag\"";
+  EXPECT_EQ(message_of([&] {
+              (void)parse_journal(
+                  R"({"relook": "journal/1", "steps": [{}, {"edit": []}, {"name": 3, "edit": []}, {}]})", "j.json");
+            }),
+            "j.json: /steps/0" + line + "\nj.json: /steps/2/name: must be a string\nj.json: /steps/3" + line);
+  const auto lines_of_wrong_steps = [&](std::size_t steps) {
+    std::string text = R"({"relook": "journal/1", "steps": [{})", expected = "j.json: /steps/0" + line;
+    for (std::size_t i = 1; i < steps; ++i) text += ", {}";
+    for (std::size_t i = 1; i < steps && i < 20; ++i) expected += "\nj.json: /steps/" + std::to_string(i) + line;
+    return std::pair{message_of([&] { (void)parse_journal(text + "]}", "j.json"); }), expected};
+  };
+  for (const auto& [steps, rest] :
+       {std::pair{20, ""}, {21, "\nj.json: 1 more step is wrong"}, {1000, "\nj.json: 980 more steps are wrong"}}) {
+    const auto [message, expected] = lines_of_wrong_steps(static_cast<std::size_t>(steps));
+    EXPECT_EQ(message, expected + rest);
+  }
+}
+
+TEST_F(JournalFile, keeps_its_bytes) {
+  const std::string text = " {\"relook\": \"journal/1\",\n\"steps\": []}\n";
+  EXPECT_EQ(read(text).text, text);
+}
+
+// A name that led to the run folder itself or out of it.
+TEST(JournalName, is_one_safe_component_of_a_path) {
+  const std::string text = R"({"relook": "journal/1", "steps": []})";
+  const std::string accents = [] {
+    std::string name;
+    for (int i = 0; i < 110; ++i) name += "\xc3\xa9";
+    return name;
+  }();
+  for (const auto& [file, name] : {std::pair<std::string, std::string>{"night.json", "night"},
+                                   {"a/b/night.v2.json", "night.v2"},
+                                   {"night.journal", "night"},
+                                   {"night", "night"},
+                                   {"...json", "journal"},
+                                   {"a/..json", "journal"},
+                                   {".json", "journal"},
+                                   {"../....json", "..."},
+                                   {"....", "..."},
+                                   {"...", "journal"},
+                                   {"..", "journal"},
+                                   {"a/", "journal"},
+                                   {"", "journal"},
+                                   {std::string(250, 'x') + ".json", std::string(200, 'x')},
+                                   {"x" + accents + ".json", "x" + accents.substr(0, 198)}}) {
+    EXPECT_EQ(parse_journal(text, file).name, name) << file;
+  }
 }
 
 TEST_F(JournalFile, refuses_json_that_says_two_things) {

@@ -1,7 +1,6 @@
 #include "edit/apply.h"
 
 #include <algorithm>
-#include <memory>
 
 #include "edit/transaction.h"
 #include "scene/look_names.h"
@@ -49,36 +48,6 @@ void check_drag_scope(const SceneState& state, const JournalStep& step, std::siz
       if (at.empty()) throw InputError(file, place.where, "node \"" + node + "\" is not part of the selection");
     }
   }
-}
-
-void check_journal(SceneState& state, const Journal& journal) {
-  const SlotCounts counts = state.slot_counts();
-  std::vector<std::unique_ptr<Transaction>> done;
-  const auto take_back = [&] {
-    while (!done.empty()) {
-      done.back()->undo();
-      done.pop_back();
-    }
-    state.drop_slots_after(counts);
-  };
-  const auto rehearse = [&](const Edit& edit) {
-    auto transaction = std::make_unique<Transaction>(state, journal.file, journal.path.parent_path());
-    (void)transaction->apply(edit);
-    done.push_back(std::move(transaction));
-  };
-  try {
-    for (const JournalStep& step : journal.steps) {
-      const std::span<const Edit> frames = frames_of(step);
-      for (std::size_t entry = 0; entry < frames.size(); ++entry) {
-        if (!step.drag.empty()) check_drag_scope(state, step, entry, journal.file);
-        rehearse(frames[entry]);
-      }
-    }
-  } catch (...) {
-    take_back();
-    throw;
-  }
-  take_back();
 }
 
 }  // namespace relook

@@ -34,8 +34,9 @@ SceneDelta apply_edit(SceneState& state, const Edit& edit, std::string_view file
 void check_drag_scope(const SceneState& state, const JournalStep& step, std::size_t entry, std::string_view file);
 
 /// Rehearses all steps of a journal and takes them back, so that a wrong journal is refused before anything is written.
-/// Throws the InputError of the first wrong step. The state is as before either way, ids included. Its price follows
-/// from the edits. Call it before anything holds on to the scene's assets.
-void check_journal(SceneState& state, const Journal& journal);
+/// Throws InputErrors that name the wrong steps, 20 at most. Returns warnings: steps that change no value of the scene,
+/// guards (only "test") aside; a drag or a wedge when none of its entries does. The state is as before either way, ids
+/// included. Its price follows from the edits. Call it before anything holds on to the scene's assets.
+[[nodiscard]] std::vector<std::string> check_journal(SceneState& state, const Journal& journal);
 
 }  // namespace relook

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/hash.h"
+#include "edit/step_errors.h"
 
 namespace relook {
 namespace {
@@ -137,11 +138,25 @@ JournalStep read_step(const JsonView& view, std::size_t number) {
   return step;
 }
 
+/// The stem of a file's name; "journal" where that would be none, the folder itself or the one above it.
+std::string journal_name(const std::filesystem::path& path) {
+  constexpr std::size_t kLongest = 200;
+  constexpr std::string_view kSuffix = ".json";
+  const std::string file = path.filename().string();
+  std::string name = file.ends_with(kSuffix) ? file.substr(0, file.size() - kSuffix.size()) : path.stem().string();
+  if (name.size() > kLongest) {
+    std::size_t end = kLongest;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xC0) == 0x80) --end;  // within a character of UTF-8
+    name.resize(end);
+  }
+  return name.empty() || name == "." || name == ".." ? "journal" : name;
+}
+
 }  // namespace
 
-Journal read_journal(const std::filesystem::path& path) {
-  const Bytes bytes = read_file(path);
-  return parse_journal(text_of(bytes), path);
+Journal read_journal(const std::filesystem::path& path, const WhileWaiting& while_waiting) {
+  const Bytes bytes = read_input(path, while_waiting);
+  return parse_journal(text_of(bytes), input_name(path));
 }
 
 Journal parse_journal(std::string_view text, const std::filesystem::path& path) {
@@ -150,7 +165,8 @@ Journal parse_journal(std::string_view text, const std::filesystem::path& path) 
   Journal journal;
   journal.path = path;
   journal.file = path.string();
-  journal.name = path.stem().string();
+  journal.name = journal_name(path);
+  journal.text = text;
   journal.hash = hash128(bytes_of(text));
   const Json json = parse_json(text, journal.file);
   const JsonView view(json, journal.file);
@@ -159,14 +175,15 @@ Journal parse_journal(std::string_view text, const std::filesystem::path& path) 
   if (view.has("generated")) (void)view.at("generated").text();
   const JsonView steps = view.at("steps");
   steps.require_array();
-  for (std::size_t i = 0; i < steps.size(); ++i) journal.steps.push_back(read_step(steps.at(i), i + 1));
+  StepErrors errors(journal.file);
+  for (std::size_t i = 0; i < steps.size(); ++i)
+    errors.is_sound([&] { journal.steps.push_back(read_step(steps.at(i), i + 1)); });
+  errors.require_none();
   return journal;
 }
 
-Edit read_patch(const std::filesystem::path& path) {
-  const Bytes bytes = read_file(path);
-  const std::string file = path.string();
-  const Json json = parse_json(text_of(bytes), file);
+Edit parse_patch(std::string_view text, std::string_view file) {
+  const Json json = parse_json(text, file);
   return read_edit(JsonView(json, file));
 }
 

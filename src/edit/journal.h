@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/json.h"
+#include "base/standard_input.h"
 
 namespace relook {
 
@@ -40,16 +41,18 @@ struct JournalStep {
 struct Journal {
   std::filesystem::path path;  // where it was read; assets and images it names lie below its folder
   std::string file;            // as named by the user, for messages
-  std::string name;            // file name without extension
+  std::string name;            // file name without extension: safe as one component of a path, at most 200 bytes
+  std::string text;            // its bytes
   std::string hash;            // XXH3-128 of the bytes
   std::vector<JournalStep> steps;
 };
 
-/// Throws InputError{file, pointer, ...}.
-[[nodiscard]] Journal read_journal(const std::filesystem::path& path);
+/// A file or, as "-", standard input. Throws InputError{file, pointer, ...} for the file as a whole, InputErrors that
+/// name the wrong steps.
+[[nodiscard]] Journal read_journal(const std::filesystem::path& path, const WhileWaiting& while_waiting = {});
 /// A journal that is not in a file yet: `path` is where it will be.
 [[nodiscard]] Journal parse_journal(std::string_view text, const std::filesystem::path& path);
-/// A bare RFC 6902 array (--look).
-[[nodiscard]] Edit read_patch(const std::filesystem::path& path);
+/// The text of a bare RFC 6902 array (--look).
+[[nodiscard]] Edit parse_patch(std::string_view text, std::string_view file);
 
 }  // namespace relook

@@ -13,12 +13,6 @@ const Json::json_pointer kGeometry("/extras/relook/geometry");
 const Json::json_pointer kModel("/extras/relook/model");
 const Json::json_pointer kUnlit("/extensions/KHR_materials_unlit");
 
-std::string short_text(const Json& value) {
-  constexpr std::size_t kLongest = 60;
-  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  return text.size() > kLongest ? text.substr(0, kLongest) + "..." : text;
-}
-
 bool is_prefix(const Tokens& prefix, const Tokens& tokens) {
   return prefix.size() <= tokens.size() && std::equal(prefix.begin(), prefix.end(), tokens.begin());
 }
@@ -75,6 +69,14 @@ SceneDelta Transaction::apply(const Edit& edit) {
 void Transaction::undo() {
   restore_document();
   (void)state_.recompile({touched_.begin(), touched_.end()}, file_);
+}
+
+bool Transaction::has_changes() {
+  return std::ranges::any_of(before_, [&](const auto& entry) {
+    const auto& [entity, before] = entry;
+    const Json* now = find(entity);
+    return (now != nullptr) != before.has_value() || (now != nullptr && *now != *before);
+  });
 }
 
 Tokens Transaction::resolve(const std::string& pointer, const PatchPlace& place) const {
@@ -157,13 +159,6 @@ Json& Transaction::replaced_value(const Tokens& path, const PatchPlace& place) {
   if (!missing->fallback.is_null()) return value_at(look, path, place);
   const std::string parent = pointer_text(Tokens(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(depth)));
   throw InputError(place.file, place.where, "no \"" + path[depth] + "\" in " + parent + " (use add)");
-}
-
-void Transaction::run_test(const Resolved& resolved, const PatchPlace& place) {
-  const Json& value = value_at(document().look, resolved.path, place);
-  if (value == resolved.operation->value) return;
-  throw InputError(file_, resolved.operation->value_where,
-                   "the test failed: " + pointer_text(resolved.path) + " is " + short_text(value));
 }
 
 Json* Transaction::find(const TouchedEntity& entity) {

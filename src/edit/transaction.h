@@ -22,6 +22,8 @@ class Transaction {
   SceneDelta apply(const Edit& edit);
   /// Takes back an edit that was applied: document, assets and scene get their earlier values.
   void undo();
+  /// Whether the edit that was applied left any entry of the document other than it was.
+  [[nodiscard]] bool has_changes();
 
  private:
   /// An operation with its pointers resolved: names for indices, aliases replaced.
@@ -37,7 +39,6 @@ class Transaction {
   /// distance, texture mapping) is created as null if the document omits it, together with the plain objects it lies
   /// in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
   [[nodiscard]] Json& replaced_value(const Tokens& path, const PatchPlace& place);
-  void run_test(const Resolved& resolved, const PatchPlace& place);
   void touch(const Tokens& tokens);
   void touch(const TouchedEntity& entity);
   void note_section(const std::string& section);
@@ -47,6 +48,10 @@ class Transaction {
   [[noreturn]] void rethrow(const LookError& error, const std::vector<Resolved>& done) const;
   [[nodiscard]] Json* find(const TouchedEntity& entity);
   [[nodiscard]] LookDocument& document() { return state_.editable_document(); }
+
+  // test_operation.cpp
+  void run_test(const Resolved& resolved, const PatchPlace& place);
+  [[nodiscard]] Json named_value(const Resolved& resolved);
 
   // node_edits.cpp: what adding, removing, renaming and copying a node means for the nodes around it.
   void remove_node(const std::string& name);

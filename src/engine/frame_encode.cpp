@@ -47,6 +47,25 @@ std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, 
   return bytes;
 }
 
+RELOOK_VECTOR_CLONES
+std::uint32_t clipped_in_row(const Rgba* pixels, std::size_t count) {
+  std::uint32_t clipped = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Rgba& pixel = pixels[i];
+    const bool is_clipped =
+        is_beyond_half(pixel.r) | is_beyond_half(pixel.g) | is_beyond_half(pixel.b) | is_beyond_half(pixel.a);
+    clipped += is_clipped ? 1 : 0;
+  }
+  return clipped;
+}
+
+std::uint32_t clipped_in(const Frame& frame, const TileRect& rect) {
+  std::uint32_t clipped = 0;
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y)
+    clipped += clipped_in_row(&frame.pixels[std::size_t{y} * frame.width + rect.x0], rect.x1 - rect.x0);
+  return clipped;
+}
+
 }  // namespace
 
 ExrAttributes frame_attributes(const FrameMeta& meta) {
@@ -63,13 +82,20 @@ FrameEncoder::FrameEncoder(std::uint32_t width, std::uint32_t height, PixelForma
       height_(height),
       format_(format),
       taken_(tile_count(width, height)),
-      chunks_(tile_count(width, height)) {}
+      chunks_(tile_count(width, height)),
+      clipped_(tile_count(width, height)) {}
 
 void FrameEncoder::take(const Frame& frame, std::span<const std::uint32_t> tiles) {
   require(frame.width == width_ && frame.height == height_, "a frame encoder keeps one size");
   parallel_for(tiles.size(), [&](std::size_t i) {
-    taken_[tiles[i]] = tile_bytes(frame, tile_rect(tiles[i], width_, height_), format_);
+    const TileRect rect = tile_rect(tiles[i], width_, height_);
+    taken_[tiles[i]] = tile_bytes(frame, rect, format_);
+    if (format_ == PixelFormat::half) clipped_[tiles[i]] = clipped_in(frame, rect);
   });
+}
+
+std::uint64_t FrameEncoder::clipped_pixels() const {
+  return std::accumulate(clipped_.begin(), clipped_.end(), std::uint64_t{0});
 }
 
 void FrameEncoder::update(const Frame& frame) {
@@ -98,6 +124,18 @@ Bytes FrameEncoder::exr(const FrameMeta& meta) {
   compress_taken();
   const std::array<ExrChannel, 4> channels{{{"R", format_}, {"G", format_}, {"B", format_}, {"A", format_}}};
   return tiled_exr(width_, height_, channels, frame_attributes(meta), chunks_);
+}
+
+std::uint64_t clipped_pixels(const Frame& frame) {
+  std::uint64_t clipped = 0;
+  for (std::uint32_t y = 0; y < frame.height; ++y)
+    clipped += clipped_in_row(&frame.pixels[std::size_t{y} * frame.width], frame.width);
+  return clipped;
+}
+
+std::string clipping_sentence(std::uint64_t pixels) {
+  return std::to_string(pixels) + (pixels == 1 ? " pixel is" : " pixels are") +
+         " beyond half's range (65504); --float keeps " + (pixels == 1 ? "it" : "them");
 }
 
 Bytes encode_exr(const Frame& frame, const FrameMeta& meta, PixelFormat format) {

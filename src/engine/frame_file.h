@@ -37,6 +37,8 @@ class FrameEncoder {
   void update(const Frame& frame, const ChangedPixels& changed_pixels);
   /// Compresses the tiles taken since the last call; the bytes of the file.
   [[nodiscard]] Bytes exr(const FrameMeta& meta);
+  /// Pixels of the frame last taken of which a half cannot hold a finite value; 0 with float32.
+  [[nodiscard]] std::uint64_t clipped_pixels() const;
 
  private:
   void take(const Frame& frame, std::span<const std::uint32_t> tiles);
@@ -46,7 +48,13 @@ class FrameEncoder {
   PixelFormat format_;
   std::vector<std::vector<unsigned char>> taken_;  // [tile_count], uncompressed; empty when the chunk is up to date
   std::vector<Bytes> chunks_;                      // [tile_count]
+  std::vector<std::uint32_t> clipped_;             // [tile_count], pixels
 };
+
+/// Pixels of which a half cannot hold a finite value.
+[[nodiscard]] std::uint64_t clipped_pixels(const Frame& frame);
+/// "12 pixels are beyond half's range (65504); --float keeps them"
+[[nodiscard]] std::string clipping_sentence(std::uint64_t pixels);
 
 [[nodiscard]] Bytes encode_exr(const Frame& frame, const FrameMeta& meta, PixelFormat format);
 

@@ -6,6 +6,14 @@
 
 namespace relook {
 
+/// Whether half_bits() makes a finite value one of the largest halves because it lies beyond them.
+[[nodiscard]] inline bool is_beyond_half(float value) {
+  constexpr std::uint32_t kMagnitude = 0x7FFFFFFF, kInfinity = 0x7F800000;
+  constexpr std::uint32_t kLargest = 0x477FE000;  // 65504
+  const std::uint32_t magnitude = std::bit_cast<std::uint32_t>(value) & kMagnitude;
+  return magnitude > kLargest && magnitude < kInfinity;
+}
+
 /// The nearest half, ties to even, as OpenEXR's `half` has it; finite values beyond its range become its largest ones.
 [[nodiscard]] inline std::uint16_t half_bits(float value) {
   constexpr std::uint32_t kSign = 0x80000000, kInfinity = 0x7F800000;
