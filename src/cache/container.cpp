@@ -1,5 +1,6 @@
 #include "cache/container.h"
 
+#include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -34,6 +35,22 @@ T value_at(BytesView bytes, std::size_t offset) {
   T value;
   std::memcpy(&value, bytes.data() + offset, sizeof value);
   return value;
+}
+
+/// Can stored bytes unpack to so many? Their frame says how many they are, and none makes more than a block, 128 KiB, of
+/// 4 bytes: a table entry that says otherwise is not believed.
+bool can_unpack_to(BytesView stored, std::uint64_t raw_bytes) {
+  constexpr std::uint64_t kBlockBytes = 128 << 10, kSmallestBlock = 4;
+  return ZSTD_getFrameContentSize(stored.data(), stored.size()) == raw_bytes &&
+         raw_bytes / kBlockBytes <= stored.size() / kSmallestBlock;
+}
+
+/// What a section may unpack to where nothing else says how long it is: all that this machine has.
+void require_memory(const std::string& section, std::uint64_t raw_bytes) {
+  const auto pages = static_cast<std::uint64_t>(std::max(::sysconf(_SC_PHYS_PAGES), 1L));
+  if (raw_bytes <= pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) return;
+  throw ResourceError("", "section " + printable(section) + " of the cache takes " + std::to_string(raw_bytes >> 20) +
+                              " MiB, more than the memory of this machine");
 }
 
 /// Byte k of every value together: high bytes of floats and indices repeat, low ones do not.
@@ -171,6 +188,9 @@ void ContainerReader::read_table(std::uint32_t count) {
                 "the table entry of section " + printable(section.name) + " makes no sense");
     if (section.stored_bytes > file_.size() - section.offset)
       throw CacheDamage(CacheFault::truncated, "section " + printable(section.name) + " is cut short");
+    check_sound(section.codec != kZstd ||
+                    can_unpack_to(file_.subspan(section.offset, section.stored_bytes), section.raw_bytes),
+                "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
     expected_offset += section.stored_bytes;
     sections_.push_back(std::move(section));
   }
@@ -195,10 +215,12 @@ const ContainerReader::Section& ContainerReader::checked(std::string_view name, 
   const Section& section = find(name);
   check_sound(section.raw_bytes % value_bytes == 0 && section.raw_bytes / value_bytes == count,
               "section " + section.name + " does not hold " + std::to_string(count) + " values");
+  require_memory(section.name, section.raw_bytes);
   return section;
 }
 
 std::string ContainerReader::text(std::string_view name) const {
+  require_memory(std::string(name), raw_bytes(name));
   std::string text(raw_bytes(name), '\0');
   read(find(name), std::as_writable_bytes(std::span<char>(text.data(), text.size())));
   return text;
