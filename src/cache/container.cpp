@@ -19,7 +19,6 @@ static_assert(std::endian::native == std::endian::little, "cache files are littl
 constexpr std::string_view kMagic = "RLKCACHE";
 constexpr std::size_t kHashDigits = 32, kNameBytes = 24;
 constexpr std::size_t kHeaderBytes = 16 + 2 * kHashDigits, kEntryBytes = kNameBytes + 2 * 4 + 4 * 8;
-constexpr std::uint32_t kMostSections = 4096;
 constexpr std::uint32_t kLargestStride = 64;
 constexpr int kCompressionLevel = 1;
 enum Codec : std::uint32_t { kRaw = 0, kZstd = 1 };
@@ -37,8 +36,8 @@ T value_at(BytesView bytes, std::size_t offset) {
   return value;
 }
 
-/// Can stored bytes unpack to so many? Their frame says how many they are, and none makes more than a block, 128 KiB, of
-/// 4 bytes: a table entry that says otherwise is not believed.
+/// Can stored bytes unpack to so many? Their frame says how many they are, and none makes more than a block, 128 KiB,
+/// of 4 bytes: a table entry that says otherwise is not believed.
 bool can_unpack_to(BytesView stored, std::uint64_t raw_bytes) {
   constexpr std::uint64_t kBlockBytes = 128 << 10, kSmallestBlock = 4;
   return ZSTD_getFrameContentSize(stored.data(), stored.size()) == raw_bytes &&
@@ -157,7 +156,6 @@ ContainerReader::ContainerReader(BytesView file, const CacheIdentity& identity) 
 
 void ContainerReader::read_header(const CacheIdentity& identity) {
   const auto count = value_at<std::uint32_t>(file_, 12);
-  check_sound(count <= kMostSections, "the header names " + std::to_string(count) + " sections");
   const std::size_t table_end = kHeaderBytes + std::size_t{count} * kEntryBytes;
   if (file_.size() < table_end + sizeof(std::uint64_t))
     throw CacheDamage(CacheFault::truncated, "the section table is cut short");
@@ -188,9 +186,9 @@ void ContainerReader::read_table(std::uint32_t count) {
                 "the table entry of section " + printable(section.name) + " makes no sense");
     if (section.stored_bytes > file_.size() - section.offset)
       throw CacheDamage(CacheFault::truncated, "section " + printable(section.name) + " is cut short");
-    check_sound(section.codec != kZstd ||
-                    can_unpack_to(file_.subspan(section.offset, section.stored_bytes), section.raw_bytes),
-                "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
+    check_sound(
+        section.codec != kZstd || can_unpack_to(file_.subspan(section.offset, section.stored_bytes), section.raw_bytes),
+        "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
     expected_offset += section.stored_bytes;
     sections_.push_back(std::move(section));
   }

@@ -93,8 +93,8 @@ class Residency {
   /// what has been measured; none: as before.
   void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::optional<double> rebuild_seconds,
            double surface_area = 1);
-  /// Makes the piece resident unless it is missing, and keeps it so. One of several threads that ask for a piece on disk
-  /// reads it, the others wait. Throws IoError, and the piece is on disk as before.
+  /// Makes the piece resident unless it is missing, and keeps it so. One of several threads that ask for a piece on
+  /// disk reads it, the others wait. Throws IoError, and the piece is on disk as before.
   [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
   /// The piece will be used soon: if it is on disk, the system begins to fetch it. Nothing else changes.
   void expect(PieceKind kind, std::size_t tile);

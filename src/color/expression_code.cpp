@@ -164,8 +164,7 @@ Kernel make_kernel(const Code& whole_code, const std::vector<Value>& outputs) {
       }
     }
     for (std::size_t ended = first_end[i + 1]; ended != kNone; ended = next_end[ended])
-      for (unsigned k = 0; k < result_count(code[ended].op); ++k)
-        registers.release(place[ended] + k);
+      for (unsigned k = 0; k < result_count(code[ended].op); ++k) registers.release(place[ended] + k);
   }
   kernel.registers = registers.size();
   for (Value value : outputs) kernel.outputs.push_back(place[value]);

@@ -41,7 +41,8 @@ NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& nod
 std::uint32_t NodePrograms::number(const TreeBlock& block, const RayNode& node) {
   const std::vector<LightId>& order = scene_.scene().light_order;
   if (order.size() <= kMostTellingLights)
-    return number(signature_of(block, node, order.size()), [&] { return restricted(key_of(scene_, block, node), part_); });
+    return number(signature_of(block, node, order.size()),
+                  [&] { return restricted(key_of(scene_, block, node), part_); });
   if (part_.all_lamps)
     return number(signature_of(block, node, 0), [&] {
       NodeKey key = key_of(scene_, block, node);

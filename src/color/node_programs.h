@@ -64,7 +64,8 @@ class NodePrograms {
     for (std::size_t b = 0; b < kBranches; ++b) children |= std::uint64_t{node.child[b] != kNoNode} << b;
     Signature signature{surface_bits(node.object, node.point.inside, children), 0};
     const LightLink* links = block.lights.data() + node.first_light;
-    for (std::size_t light = 0; light < lights; ++light) signature.lights |= light_bits(links[light].state) << (2 * light);
+    for (std::size_t light = 0; light < lights; ++light)
+      signature.lights |= light_bits(links[light].state) << (2 * light);
     return signature;
   }
   [[nodiscard]] std::size_t place_of_lamp() const;

@@ -65,9 +65,8 @@ constexpr std::size_t kLongestShortName = 31;
 bool has_long_names(std::span<const ExrChannel> channels, const ExrAttributes& attributes) {
   const auto is_long = [](const std::string& name) { return name.size() > kLongestShortName; };
   return std::ranges::any_of(channels, is_long, &ExrChannel::name) ||
-         std::ranges::any_of(attributes, is_long, [](const auto& attribute) -> const std::string& {
-           return attribute.first;
-         });
+         std::ranges::any_of(attributes, is_long,
+                             [](const auto& attribute) -> const std::string& { return attribute.first; });
 }
 
 class Writer {

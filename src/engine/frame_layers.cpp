@@ -37,8 +37,11 @@ std::string channel_name(std::string_view name) {
     while (end < clean.size() && is_continuation(clean[end])) ++end;
     const auto first = static_cast<unsigned char>(clean[i]);
     char32_t character = first < 0x80 ? first : first & (0xFFU >> (end - i + 1));
-    for (std::size_t k = i + 1; k < end; ++k) character = character << 6 | (static_cast<unsigned char>(clean[k]) & 0x3FU);
-    const bool is_plain = first < 0x80 ? (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') || (first >= '0' && first <= '9') || first == '-' : !is_shapeless(character);
+    for (std::size_t k = i + 1; k < end; ++k)
+      character = character << 6 | (static_cast<unsigned char>(clean[k]) & 0x3FU);
+    const bool is_plain = first < 0x80 ? (first >= 'a' && first <= 'z') || (first >= 'A' && first <= 'Z') ||
+                                             (first >= '0' && first <= '9') || first == '-'
+                                       : !is_shapeless(character);
     result += is_plain ? clean.substr(i, end - i) : "_";
     i = end;
   }
@@ -108,10 +111,11 @@ std::string matte_name(const Material& material) { return material.name.empty() 
 void require_layers(const Scene& scene) {
   // OpenEXR counts the bytes of a tile in 31 bits; other channels than lamps' are less than 100.
   constexpr std::size_t kTilePixels = std::size_t{kTileSize} * kTileSize;
-  constexpr std::size_t kMostChannels = 0x7FFFFFFF / (kTilePixels * sizeof(float)), kMostLamps = (kMostChannels - 100) / 3;
+  constexpr std::size_t kMostChannels = 0x7FFFFFFF / (kTilePixels * sizeof(float)),
+                        kMostLamps = (kMostChannels - 100) / 3;
   if (scene.light_order.size() > kMostLamps)
-    throw UsageError("--aovs: a frame holds layers of at most " + std::to_string(kMostLamps) + " lamps; the scene has " +
-                     std::to_string(scene.light_order.size()));
+    throw UsageError("--aovs: a frame holds layers of at most " + std::to_string(kMostLamps) +
+                     " lamps; the scene has " + std::to_string(scene.light_order.size()));
 }
 
 FrameLayers::FrameLayers(const Scene& scene, std::uint32_t samples, PixelFormat format)

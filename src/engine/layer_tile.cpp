@@ -36,7 +36,7 @@ LayerTile::LayerTile(const LayerScene& scene, ProgramTable& programs)
       columns_(scene.layers.channels.size()) {}
 
 const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame, const TileMask* changed) {
-  const std::uint32_t samples = s_.view.samples, 
+  const std::uint32_t samples = s_.view.samples,
                       chunk = std::max(1U, chunk_samples(s_.grow.layout().lights) / samples);  // whole pixels
   for (std::vector<float>& column : columns_) column.assign(rect.pixels(), 0.0F);
   for (std::uint32_t first = 0; first < rect.pixels(); first += chunk) {

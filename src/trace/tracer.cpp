@@ -22,20 +22,11 @@
 
 namespace relook {
 
-namespace {
-
-struct ReleaseScene {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-struct ReleaseGeometry {
-  void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-};
-using SceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
-using GeometryHandle = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
-
-}  // namespace
-
 struct Tracer::TopLevel::Impl {
+  struct ReleaseScene {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+  };
+  using SceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
   /// Objects under one Embree scene.
   struct Layer {
     SceneHandle scene;                                // null: no objects
@@ -135,37 +126,6 @@ void reject_hidden(const RTCFilterFunctionNArguments* args) {
   if ((*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)].object == nullptr) args->valid[0] = 0;
 }
 
-/// A monitor that Embree calls: what it throws is kept until Embree has come back with an error.
-class Watch {
- public:
-  explicit Watch(MemoryMonitor monitor) : monitor_(std::move(monitor)) {}
-
-  [[nodiscard]] bool is_wanted() const { return monitor_ != nullptr; }
-  /// False: Embree is to give up.
-  bool report(std::int64_t bytes) noexcept {
-    try {
-      monitor_(bytes);
-      return true;
-    } catch (...) {
-      if (bytes <= 0) return true;  // nothing is taken
-      const std::lock_guard lock(mutex_);
-      if (!thrown_) thrown_ = std::current_exception();
-      return false;
-    }
-  }
-  [[nodiscard]] std::exception_ptr take_thrown() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(thrown_, nullptr);
-  }
-
- private:
-  MemoryMonitor monitor_;
-  std::mutex mutex_;
-  std::exception_ptr thrown_;
-};
-
-bool report_memory(void* watch, ssize_t bytes, bool /*is_done*/) { return static_cast<Watch*>(watch)->report(bytes); }
-
 bool is_traceable(const Ray& ray) {
   constexpr float kLargest = 1e18F;
   const auto is_bounded = [](const Imath::V3f& v) {
@@ -242,6 +202,44 @@ void put_in_order(std::vector<Crossing>& crossings) {
 
 struct Tracer::Impl {
   using Layer = TopLevel::Impl::Layer;
+  using SceneHandle = TopLevel::Impl::SceneHandle;
+  struct ReleaseGeometry {
+    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
+  };
+  using GeometryHandle = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
+
+  /// A monitor that Embree calls: what it throws is kept until Embree has come back with an error.
+  class Watch {
+   public:
+    explicit Watch(MemoryMonitor monitor) : monitor_(std::move(monitor)) {}
+
+    [[nodiscard]] bool is_wanted() const { return monitor_ != nullptr; }
+    /// False: Embree is to give up.
+    bool report(std::int64_t bytes) noexcept {
+      try {
+        monitor_(bytes);
+        return true;
+      } catch (...) {
+        if (bytes <= 0) return true;  // nothing is taken
+        const std::lock_guard lock(mutex_);
+        if (!thrown_) thrown_ = std::current_exception();
+        return false;
+      }
+    }
+    [[nodiscard]] std::exception_ptr take_thrown() {
+      const std::lock_guard lock(mutex_);
+      return std::exchange(thrown_, nullptr);
+    }
+
+   private:
+    MemoryMonitor monitor_;
+    std::mutex mutex_;
+    std::exception_ptr thrown_;
+  };
+  static bool report_memory(void* watch, ssize_t bytes, bool /*is_done*/) {
+    return static_cast<Watch*>(watch)->report(bytes);
+  }
+
   Watch watch;
   RTCDevice device = nullptr;
   bool count_blockers;
@@ -438,9 +436,8 @@ bool Tracer::passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>
   query.ray = &ray;
   query.crossings = &crossings;
   const bool any_hidden = !top.hidden.empty();
-  const bool is_free =
-      !(top.meets_base() && is_blocked(top.base.scene.get(), top.base.placed, any_hidden, query)) &&
-      !(top.meets_overlay() && is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query));
+  const bool is_free = !(top.meets_base() && is_blocked(top.base.scene.get(), top.base.placed, any_hidden, query)) &&
+                       !(top.meets_overlay() && is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query));
   if (query.is_short_of_memory) throw std::bad_alloc();
   if (is_free) put_in_order(crossings);
   return is_free;
