@@ -1,32 +1,20 @@
 #include "trace/tracer.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <map>
-#include <mutex>
 #include <new>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "base/error.h"
-#include "base/parallel.h"
+#include "trace/embree_device.h"
 #include "trace/surface.h"
 
 namespace relook {
 
 struct Tracer::TopLevel::Impl {
-  struct ReleaseScene {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  };
-  using SceneHandle = std::unique_ptr<RTCSceneTy, ReleaseScene>;
   /// Objects under one Embree scene.
   struct Layer {
     SceneHandle scene;                                // null: no objects
@@ -202,46 +190,7 @@ void put_in_order(std::vector<Crossing>& crossings) {
 
 struct Tracer::Impl {
   using Layer = TopLevel::Impl::Layer;
-  using SceneHandle = TopLevel::Impl::SceneHandle;
-  struct ReleaseGeometry {
-    void operator()(RTCGeometry geometry) const { rtcReleaseGeometry(geometry); }
-  };
-  using GeometryHandle = std::unique_ptr<RTCGeometryTy, ReleaseGeometry>;
-
-  /// A monitor that Embree calls: what it throws is kept until Embree has come back with an error.
-  class Watch {
-   public:
-    explicit Watch(MemoryMonitor monitor) : monitor_(std::move(monitor)) {}
-
-    [[nodiscard]] bool is_wanted() const { return monitor_ != nullptr; }
-    /// False: Embree is to give up.
-    bool report(std::int64_t bytes) noexcept {
-      try {
-        monitor_(bytes);
-        return true;
-      } catch (...) {
-        if (bytes <= 0) return true;  // nothing is taken
-        const std::lock_guard lock(mutex_);
-        if (!thrown_) thrown_ = std::current_exception();
-        return false;
-      }
-    }
-    [[nodiscard]] std::exception_ptr take_thrown() {
-      const std::lock_guard lock(mutex_);
-      return std::exchange(thrown_, nullptr);
-    }
-
-   private:
-    MemoryMonitor monitor_;
-    std::mutex mutex_;
-    std::exception_ptr thrown_;
-  };
-  static bool report_memory(void* watch, ssize_t bytes, bool /*is_done*/) {
-    return static_cast<Watch*>(watch)->report(bytes);
-  }
-
-  Watch watch;
-  RTCDevice device = nullptr;
+  EmbreeDevice device;
   bool count_blockers;
   struct BottomLevel {
     std::weak_ptr<const Mesh> mesh;  // expired: the address may belong to another mesh by now
@@ -249,52 +198,12 @@ struct Tracer::Impl {
   };
   std::map<std::pair<const Mesh*, bool>, BottomLevel> bottom_levels;  // by mesh and whether it reports crossings
 
-  // At most AVX2: hosts that share a cache must agree in every bit, so they must run the same code.
-  Impl(bool counts, MemoryMonitor m)
-      : watch(std::move(m)), device(rtcNewDevice("max_isa=avx2")), count_blockers(counts) {
-    if (device == nullptr) throw std::bad_alloc();
-    if (watch.is_wanted()) rtcSetDeviceMemoryMonitorFunction(device, report_memory, &watch);
-  }
-  ~Impl() {
-    bottom_levels.clear();
-    rtcSetDeviceMemoryMonitorFunction(device, nullptr, nullptr);  // a top level may keep the device alive
-    rtcReleaseDevice(device);
-  }
-
-  /// After building: Embree reports what went wrong only on request, and leaves its own float mode behind. Throws what
-  /// the monitor has thrown, std::bad_alloc or ResourceError.
-  void check() {
-    set_float_mode();
-    const RTCError error = rtcGetDeviceError(device);
-    if (const std::exception_ptr thrown = watch.take_thrown()) std::rethrow_exception(thrown);
-    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (error != RTC_ERROR_NONE)
-      throw ResourceError("", "Embree cannot build an acceleration structure (its error " +
-                                  std::to_string(static_cast<int>(error)) + ")");
-  }
-  /// What Embree has made, if it has.
-  template <class Handle>
-  Handle checked(Handle handle) {
-    if (handle) return handle;
-    check();
-    throw std::bad_alloc();
-  }
+  Impl(bool counts, MemoryMonitor monitor) : device(std::move(monitor)), count_blockers(counts) {}
 
   /// Drops the bottom levels of meshes that no object uses any more.
   void drop_unused() {
     std::erase_if(bottom_levels, [](auto& entry) { return entry.second.mesh.expired(); });
   }
-
-  SceneHandle new_scene() {
-    SceneHandle scene = checked(SceneHandle(rtcNewScene(device)));
-#if RTC_VERSION_MAJOR >= 4
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
-#else
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-#endif
-    return scene;
-  }
-  GeometryHandle new_geometry(RTCGeometryType type) { return checked(GeometryHandle(rtcNewGeometry(device, type))); }
 
   /// `reports_crossings`: shadow segments ask collect_crossings() at each hit; otherwise the first hit blocks them.
   RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh, bool reports_crossings) {
@@ -308,8 +217,8 @@ struct Tracer::Impl {
   }
 
   SceneHandle build_bottom_level(const Mesh& mesh, bool reports_crossings) {
-    SceneHandle scene = new_scene();
-    const GeometryHandle handle = new_geometry(RTC_GEOMETRY_TYPE_TRIANGLE);
+    SceneHandle scene = device.new_scene();
+    const GeometryHandle handle = device.new_geometry(RTC_GEOMETRY_TYPE_TRIANGLE);
     const RTCGeometry geometry = handle.get();
     // Embree reads 16 bytes at the last vertex, so it gets a copy of its own.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -317,7 +226,7 @@ struct Tracer::Impl {
     auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
     if (positions == nullptr || triangles == nullptr) {
-      check();
+      device.check();
       throw std::bad_alloc();
     }
     for (const Point& p : mesh.positions) positions = std::copy_n(&p.x, 3, positions);
@@ -327,14 +236,14 @@ struct Tracer::Impl {
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.get(), geometry);
     rtcCommitScene(scene.get());
-    check();
+    device.check();
     return scene;
   }
 
   GeometryHandle new_instance(const RayObject& object) {
     const bool reports_crossings = object.optics.passes_light || object.optics.cut_out || count_blockers;
     const RTCScene bottom = bottom_level(object.mesh, reports_crossings);
-    GeometryHandle handle = new_geometry(RTC_GEOMETRY_TYPE_INSTANCE);
+    GeometryHandle handle = device.new_geometry(RTC_GEOMETRY_TYPE_INSTANCE);
     const RTCGeometry instance = handle.get();
     rtcSetGeometryInstancedScene(instance, bottom);
     float columns[12];  // 3x4, column by column: Imath's rows are Embree's columns
@@ -355,7 +264,7 @@ struct Tracer::Impl {
     // others; boxes of instances are rounded, so at silhouettes the two could disagree. Twice the same object makes it
     // a child.
     if (layer.placed.size() == 1) layer.placed.push_back(layer.placed.front());
-    layer.scene = new_scene();
+    layer.scene = device.new_scene();
     for (std::size_t i = 0; i < layer.placed.size(); ++i) {
       const RayObject& object = *layer.placed[i].object;
       const GeometryHandle instance = new_instance(object);
@@ -363,7 +272,7 @@ struct Tracer::Impl {
       layer.meshes.push_back(object.mesh);
     }
     rtcCommitScene(layer.scene.get());
-    check();
+    device.check();
     return layer;
   }
 };
