@@ -70,6 +70,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   };
   if (journal) span.emplace(console.trace(), "apply journal");
   if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before, console);
+  if (arguments.layers) require_layers(loaded.state->scene());
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   span.emplace(console.trace(), "render");
   RenderStats stats;
