@@ -32,6 +32,7 @@ class Console {
   void end_stage();
   /// Throws Interrupted once a signal has come.
   void check_interrupt() const { interrupt_.check(); }
+  [[nodiscard]] const Interrupt& interrupt() const { return interrupt_; }
 
   /// A line of a result; nothing with --quiet or --json.
   void line(std::string_view text);

@@ -2,11 +2,15 @@
 
 #include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <initializer_list>
 
 namespace relook {
 namespace {
+
+constexpr int kSignalExitBase = 128;  // the shell's convention for "ended by a signal"
 
 /// Sent by the destructor, to the waiting thread only.
 int stop_waiting() { return SIGRTMIN; }
@@ -40,13 +44,20 @@ void Interrupt::check() const {
 }
 
 void Interrupt::wait_for_signals() {
+  constexpr auto kPatience = std::chrono::milliseconds(1500);
+  constexpr timespec kPause{0, 100'000'000};
   const sigset_t set = watched_signals();
+  std::chrono::steady_clock::time_point first;
   for (;;) {
-    int signal = 0;
-    if (sigwait(&set, &signal) != 0) continue;
+    const int signal = signal_.load() == 0 ? sigwaitinfo(&set, nullptr) : sigtimedwait(&set, nullptr, &kPause);
     if (signal == stop_waiting()) return;
     int none = 0;
-    signal_.compare_exchange_strong(none, signal);
+    if (signal > 0 && signal_.compare_exchange_strong(none, signal)) first = std::chrono::steady_clock::now();
+    const bool is_late = signal_.load() != 0 && std::chrono::steady_clock::now() - first > kPatience;
+    if (!is_late || expendable_.load() == 0) continue;
+    const std::lock_guard lock(mutex_);
+    if (last_words_) last_words_(signal_.load());
+    _exit(kSignalExitBase + signal_.load());
   }
 }
 

@@ -3,7 +3,10 @@
 // handler. Once one has come, further ones change nothing.
 #pragma once
 #include <atomic>
+#include <functional>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -20,10 +23,31 @@ class Interrupt {
   /// Throws Interrupted once a signal has come: unwinds to main, removing temporary files on the way.
   void check() const;
 
+  /// While it lives nothing is being made that would be lost or left half done: when work does not come to a check()
+  /// for a second and a half after a signal (an image that is being decoded, say), the process ends at once.
+  class Expendable {
+   public:
+    explicit Expendable(const Interrupt& interrupt) : count_(interrupt.expendable_) { ++count_; }
+    ~Expendable() { --count_; }
+    Expendable(const Expendable&) = delete;
+    Expendable& operator=(const Expendable&) = delete;
+
+   private:
+    std::atomic<int>& count_;
+  };
+  /// What is to be said then.
+  void set_last_words(std::function<void(int signal)> last_words) {
+    const std::lock_guard lock(mutex_);
+    last_words_ = std::move(last_words);
+  }
+
  private:
   void wait_for_signals();
 
   std::atomic<int> signal_{0};
+  mutable std::atomic<int> expendable_{0};
+  std::mutex mutex_;
+  std::function<void(int)> last_words_;
   std::thread waiter_;
 };
 

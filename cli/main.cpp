@@ -1,6 +1,7 @@
 // The program: parses, runs one verb, and is the only place that catches, prints errors and picks the exit code.
 #include <cstdio>
 #include <new>
+#include <optional>
 
 #include "base/parallel.h"
 #include "outputs.h"
@@ -61,15 +62,24 @@ int guarded(const Work& work, const Report& report) {
   }
 }
 
+/// Others read, and write a small file in the end, if any.
+bool makes_pictures(Verb verb) {
+  return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay;
+}
+
 ExitCode run(const Arguments& arguments) {
-  const Interrupt interrupt;
+  Interrupt interrupt;
   Console console(arguments, interrupt);
   const auto report = [&](ExitCode code, const char* what) { console.error(code, what); };
+  interrupt.set_last_words(
+      [&](int signal) { console.error(static_cast<ExitCode>(kSignalExitBase + signal), "interrupted"); });
   set_thread_count(arguments.threads);
   const int code = guarded(
       [&] {
         require_one_standard_input(arguments);
         check_outputs(arguments);
+        std::optional<Interrupt::Expendable> only_reads;
+        if (!makes_pictures(arguments.verb)) only_reads.emplace(interrupt);
         const ExitCode result = run_verb(arguments, console);
         console.finish();
         return result;

@@ -58,7 +58,9 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   if (const std::optional<Json> manifest = finished_cache(arguments, console))
     return say_complete(arguments.output, *manifest, console);
   std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
+  std::optional<Interrupt::Expendable> loading(std::in_place, console.interrupt());
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
+  loading.reset();
   console.warn(loaded.warnings);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
   require_writable(arguments.output);

@@ -59,7 +59,9 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   if (!arguments.journal.empty()) journal = read_journal(arguments.journal, [&] { console.check_interrupt(); });
   if (journal) require_not_outputs(arguments, files_of(*journal), "a file of the journal");
   std::optional<TraceScope> span(std::in_place, console.trace(), "load scene");
+  std::optional<Interrupt::Expendable> loading(std::in_place, console.interrupt());
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
+  loading.reset();
   console.warn(loaded.warnings);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
   FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
@@ -80,7 +82,8 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   const Bytes bytes = encoded(arguments, *loaded.state, frame, before, meta, console);
   console.check_interrupt();
   write_file(arguments.output, bytes);
-  const std::uint64_t clipped = arguments.float_frames ? 0 : clipped_pixels(frame);
+  const bool is_half = !arguments.float_frames && !is_preview_name(arguments.output);
+  const std::uint64_t clipped = is_half ? clipped_pixels(frame) : 0;
   if (clipped > 0) console.warn({arguments.output + ": " + clipping_sentence(clipped)});
   span.reset();
   console.part_done();

@@ -124,6 +124,7 @@ class ReplayCommand {
   ReplayCommand(const Arguments& arguments, Console& console, const std::vector<Journal>& journals,
                 std::vector<RunPlan>& plans, const Json& manifest, std::shared_ptr<const DisplayView> view)
       : arguments_(arguments), console_(console), journals_(journals), plans_(plans), view_(std::move(view)) {
+    const Interrupt::Expendable nothing_made(console.interrupt());
     open_cache_anew();
     std::vector<std::string> damage = sentences(opened_.losses);
     for (std::string& sentence : damage) sentence = arguments.inputs[0] + ": " + sentence + "; traced again";

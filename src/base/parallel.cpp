@@ -39,6 +39,10 @@ bool is_interrupted() {
   return signal != nullptr && signal->load(std::memory_order_relaxed) != 0;
 }
 
+void stop_if_interrupted() {
+  if (is_interrupted()) throw Interrupted{interruption_here()->load()};
+}
+
 void set_thread_count(std::size_t threads) {
   limit().reset();
   if (threads > 0)

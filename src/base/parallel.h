@@ -35,6 +35,8 @@ class Uninterrupted {
 };
 /// Whether a loop that this thread begins now would be interrupted.
 [[nodiscard]] bool is_interrupted();
+/// For long work within one body: throws Interrupted if a loop would.
+void stop_if_interrupted();
 
 /// Calls body(i) once for each i in [0, count), `grain` at least at a time on one thread. The first exception thrown by
 /// a body is rethrown here.

@@ -7,6 +7,8 @@
 #include "engine/sampling.h"
 #include "trace/probe.h"
 
+#include "base/parallel.h"
+
 namespace relook {
 namespace {
 
@@ -100,6 +102,7 @@ class TileUpdater {
 
   void flush() {
     if (roots_.empty()) return;
+    stop_if_interrupted();
     const std::size_t first = result_.colors.size();
     result_.colors.resize(first + roots_.size());
     shader_.shade(block_, roots_, std::span(result_.colors).subspan(first));

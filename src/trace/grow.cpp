@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "trace/grower.h"
 
 namespace relook {
@@ -84,6 +85,7 @@ class Expander {
 
 void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, std::uint32_t first_sample,
                  TreeBlock& block, std::vector<std::uint32_t>& roots, GrowCounters& counters) {
+  stop_if_interrupted();
   std::vector<Meeting> meetings;
   meetings.reserve(primaries.size());
   for (const SpawnedRay& ray : primaries)
