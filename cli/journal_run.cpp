@@ -281,6 +281,7 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   folder_.write_frame(entry, replayer_.image(), {result.changed_pixels, follows_last_}, std::move(meta),
                       arguments_.layers ? &replayer_.state().scene() : nullptr);
   follows_last_ = true;
+  warn_of_clipping(entry);
   if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
   entry.seconds.total = seconds_since(start);
   entry.resident = replayer_.resident();
@@ -323,6 +324,13 @@ void JournalRun::print(const StepReport& entry) {
     line += ", verified: " + std::to_string(entry.verify->pixels_different) + " of " +
             std::to_string(entry.verify->pixels_compared) + " pixels differ";
   console_.log_line(line);
+}
+
+/// Of the first frames; print_summary() counts all.
+void JournalRun::warn_of_clipping(const StepReport& entry) {
+  constexpr std::size_t kMostSaid = 3;
+  if (folder_.clipped_pixels() == 0 || ++clipped_frames_ > kMostSaid) return;
+  console_.warn({entry.frame + ": " + clipping_sentence(folder_.clipped_pixels())});
 }
 
 void JournalRun::print_summary() {

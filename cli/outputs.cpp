@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "cache/cache.h"
+#include "cache/cache_folder.h"
 #include "report/own_file.h"
 #include "report/progress_file.h"
 #include "report/report_file.h"

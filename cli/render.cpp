@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "edit/apply.h"
+#include "engine/frame_layers.h"
 #include "engine/layered_frame.h"
 #include "engine/preview.h"
 #include "engine/report.h"

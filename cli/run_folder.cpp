@@ -86,6 +86,8 @@ void RunFolder::write_frame(StepReport& step, const Image& image, const FrameCha
       encoder.update(frame, change.pixels);
   };
   if (layers == nullptr) take(encoder_);
+  if (style_.format == PixelFormat::half)
+    clipped_pixels_ = layers == nullptr ? encoder_.clipped_pixels() : relook::clipped_pixels(frame);
   take(preview_encoder_);
   preview_is_stale_ = preview_is_stale_ || takes_all || !change.pixels.empty();
   meta.step = step_label(step.place);

@@ -46,6 +46,8 @@ class RunFolder {
   /// `layers`: the frame's scene, if it is to have layers; they are made here, which is part of seconds.write.
   void write_frame(StepReport& step, const Image& image, const FrameChange& change, FrameMeta meta,
                    const Scene* layers);
+  /// Of the frame last given to write_frame(): pixels that half cannot hold. 0 for layered frames' float32 parts.
+  [[nodiscard]] std::uint64_t clipped_pixels() const { return clipped_pixels_; }
   /// Writes overlays/<step>_<kind>.png: leaves that depend on the selection, leaves whose tunnels it may touch, groups.
   void write_overlays(StepReport& step, const Replayer& replayer, const StepResult& result);
   /// Once all is known of a frame, or of a drag or wedge as a whole: a later command may take it over.
@@ -76,6 +78,7 @@ class RunFolder {
   std::pair<std::string, std::map<std::string, FileStamp>> last_files_;  // of the last frame written: name, stamps
   std::vector<StepReport> notes_;                                        // not yet in the progress file
   std::size_t own_frames_ = 0;
+  std::uint64_t clipped_pixels_ = 0;
   std::uint64_t noted_bytes_ = 0;  // of the progress file, when the report was written
   std::unique_ptr<ReportFile> report_file_;
   std::future<void> writing_;  // uses the members above: goes first, and waits

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -98,7 +97,7 @@ TEST_F(Resume, goes_on_after_any_step) {
     EXPECT_EQ(now["frames"], then["frames"]);
     ASSERT_EQ(now["steps"].size(), then["steps"].size());
     for (std::size_t i = 0; i < now["steps"].size(); ++i)
-      for (const char* key : {"step", "name", "class", "frame", "frame_hash", "pixels_changed", "drag_frame"})
+      for (const char* key : {"step", "name", "class", "frame", "frame_hash", "pixels_changed", "drag_frame", "edits"})
         EXPECT_EQ(now["steps"][i][key], then["steps"][i][key]) << i << " " << key;
     kept.insert(now["resumed"]["frames"].get<std::size_t>());
   }
@@ -125,33 +124,56 @@ TEST_F(Resume, verified_steps_are_exact_after_it) {
   for (const Json& step : report("run")["steps"]) EXPECT_EQ(step["verify"]["pixels_different"], 0);
 }
 
-TEST_F(Resume, a_changed_frame_and_what_follows_is_done_again) {
+TEST_F(Resume, a_changed_frame_is_done_again) {
   kill_at("run", 100);
   std::ofstream(at("run/frames/0002.exr"), std::ios::app) << "x";
   ASSERT_EQ(replay("run").exit_code, 0);
-  EXPECT_EQ(report("run")["resumed"]["frames"], 2);
   EXPECT_TRUE(files("run") == whole_);
+  const Json steps = report("run")["steps"];
+  EXPECT_EQ(steps[1]["resumed"], true);
+  EXPECT_EQ(steps[2]["resumed"], false);
+  EXPECT_EQ(steps[3]["resumed"], true) << "each frame for itself";
 }
 
-TEST_F(Resume, other_options_and_fresh_start_anew) {
-  for (const char* flag : {"--fresh", "--overlays", "--float"}) {
+TEST_F(Resume, a_frame_with_another_time_but_the_same_bytes_is_kept) {
+  ASSERT_EQ(replay("run").exit_code, 0);
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(at("run/frames")))
+    std::filesystem::last_write_time(entry.path(), std::filesystem::file_time_type::clock::now());
+  EXPECT_NE(replay("run").output.find("complete"), std::string::npos);
+}
+
+TEST_F(Resume, fresh_and_further_wishes_do_frames_again) {
+  for (const char* flag : {"--fresh", "--overlays", "--verify"}) {
     kill_at("run", 100);
     ASSERT_EQ(replay("run", {flag}).exit_code, 0);
     EXPECT_EQ(report("run")["resumed"]["frames"], 0) << flag;
   }
-  ASSERT_EQ(replay("run").exit_code, 0);
-  EXPECT_EQ(report("run")["resumed"]["frames"], 0) << "a complete run is done again";
 }
 
-TEST_F(Resume, a_folder_in_use_is_refused) {
+TEST_F(Resume, frames_of_another_kind_are_refused) {
+  kill_at("run", 100);
+  const ProgramResult refused = replay("run", {"--float"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.output.find("half, not float"), std::string::npos) << refused.output;
+  ASSERT_EQ(replay("run", {"--float", "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(report("run")["resumed"]["frames"], 0);
+}
+
+TEST_F(Resume, steps_in_use_are_refused) {
   std::filesystem::create_directory(at("run"));
   const int other = open(at("run/progress.jsonl").c_str(), O_RDWR | O_CREAT, 0666);
-  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_start = 3;  // the byte of a step
+  lock.l_len = 1;
+  ASSERT_EQ(fcntl(other, F_OFD_SETLK, &lock), 0);
   const ProgramResult refused = replay("run");
-  EXPECT_EQ(refused.exit_code, 6);
-  EXPECT_EQ(refused.output, "relook: " + at("run") + ": another replay is writing this run\n");
+  EXPECT_EQ(refused.exit_code, 75);
+  EXPECT_EQ(refused.output, "relook: " + at("run") + ": another replay is at one of the steps 0 to 7 of this run\n");
+  EXPECT_EQ(replay("run", {"--steps", "4-5"}).exit_code, 0) << "others are free";
   close(other);
   EXPECT_EQ(replay("run").exit_code, 0);
+  EXPECT_EQ(report("run")["resumed"]["frames"], 3);
 }
 
 }  // namespace

@@ -1,0 +1,183 @@
+// Signals that ask the program to end, schedulers' notices included: whatever it is doing, it ends soon, says so in its
+// exit code, leaves no temporary files, and the same command goes on from there.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <thread>
+
+#include "base/files.h"
+#include "base/hash.h"
+#include "base/json.h"
+#include "run_program.h"
+
+namespace relook {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+const std::string kScene = (fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
+constexpr auto kSoon = 10s;  // a second or two, on a machine with much else to do
+
+ProgramResult relook(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
+  return run_program(arguments);
+}
+
+pid_t start(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    execv(words[0], words.data());
+    _exit(127);
+  }
+  return child;
+}
+
+/// The exit code; fails when it takes long.
+int end_of(pid_t child) {
+  const auto asked = std::chrono::steady_clock::now();
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - asked, kSoon);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+}
+
+Json move(double x) {
+  return Json::array({{{"op", "replace"}, {"path", "/nodes/CentralSphere/translation"}, {"value", {x, 1, 0}}}});
+}
+
+/// Two steps, a drag and a wedge of many frames each.
+std::string journal_text() {
+  Json drag = Json::array(), values = Json::array();
+  for (int i = 0; i < 150; ++i) {
+    drag.push_back(move(0.002 * i));
+    values.push_back(1.1 + 0.004 * i);
+  }
+  const Json steps{{{"edit", move(0.1)}},
+                   {{"edit", move(0.2)}},
+                   {{"select", {"/nodes/CentralSphere"}}, {"drag", drag}},
+                   {{"wedge", {{"path", "/materials/Glass/extensions/KHR_materials_ior/ior"}, {"values", values}}}}};
+  return Json{{"relook", "journal/1"}, {"steps", steps}}.dump();
+}
+
+class Interruption : public testing::Test {
+ protected:
+  void SetUp() override { std::ofstream(at("j.json")) << journal_text(); }
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+  [[nodiscard]] std::vector<std::string> replay(const std::string& run) const {
+    return {"replay", at("c"), at("j.json"), "-o", at(run), "--quiet", "--report", "json"};
+  }
+  void wait_for(const std::string& file) const {
+    for (int i = 0; i < 3000 && !fs::exists(at(file)); ++i) std::this_thread::sleep_for(10ms);
+    ASSERT_TRUE(fs::exists(at(file))) << file;
+  }
+  [[nodiscard]] std::map<std::string, std::string> frames(const std::string& run) const {
+    std::map<std::string, std::string> frames;
+    for (const char* part : {"frames", "previews"})
+      for (const auto& entry : fs::directory_iterator(at(run + "/" + part)))
+        frames[entry.path().lexically_relative(at(run)).string()] = hash128(read_file(entry.path()));
+    return frames;
+  }
+  [[nodiscard]] Json report(const std::string& run) const {
+    return parse_json(text_of(read_file(at(run + "/report.json"))), "report.json");
+  }
+  ScratchFolder folder_{"interruption"};
+};
+
+TEST_F(Interruption, a_run_is_left_and_taken_up_by_any_signal_within_steps_drags_and_wedges) {
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook(replay("whole")).exit_code, 0);
+  const auto whole = frames("whole");
+  const std::vector<std::pair<int, std::string>> signals{
+      {SIGTERM, "frames/0001.exr"},     {SIGINT, "frames/0003_010.exr"}, {SIGHUP, "frames/0003_050.exr"},
+      {SIGUSR1, "frames/0003_100.exr"}, {SIGUSR2, "frames/0004_020.exr"}, {SIGXCPU, "frames/0004_070.exr"}};
+  for (const auto& [signal, after] : signals) {
+    SCOPED_TRACE(strsignal(signal));
+    fs::remove_all(at("run"));
+    const pid_t child = start(replay("run"));
+    wait_for("run/" + after);
+    kill(child, signal);
+    EXPECT_EQ(end_of(child), 128 + signal);
+    const auto left = frames("run");
+    for (const auto& [name, hash] : left) {
+      ASSERT_TRUE(whole.contains(name)) << name << " remains";
+      EXPECT_EQ(hash, whole.at(name)) << name;
+    }
+    EXPECT_EQ(report("run")["interrupted"], true);
+    EXPECT_EQ(report("run")["frames"].size() * 2, left.size());
+    ASSERT_EQ(relook(replay("run")).exit_code, 0);
+    EXPECT_EQ(report("run")["interrupted"], false);
+    EXPECT_EQ(report("run")["resumed"]["frames"], left.size() / 2);
+    EXPECT_EQ(report("run")["frames"], report("whole")["frames"]);
+    EXPECT_TRUE(frames("run") == whole);
+  }
+}
+
+TEST_F(Interruption, further_signals_change_nothing) {
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
+  const pid_t child = start(replay("run"));
+  wait_for("run/frames/0002.exr");
+  for (const int signal : {SIGUSR1, SIGTERM, SIGINT, SIGTERM, SIGUSR2, SIGHUP, SIGXCPU}) {
+    kill(child, signal);
+    std::this_thread::sleep_for(2ms);
+  }
+  EXPECT_EQ(end_of(child), 128 + SIGUSR1);
+  EXPECT_EQ(report("run")["interrupted"], true);
+}
+
+TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "640x360", "--samples", "64", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"render", kScene, "-o", at("a.exr"), "--resolution", "2048x1152", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"render", kScene, "-o", at("b.exr"), "--resolution", "2048x1152", "--lights", "auto", "--quiet"}).exit_code, 0);
+  std::ofstream(at("slow.json")) << Json{{"relook", "journal/1"}, {"steps", {{{"edit", move(0.5)}}, {{"edit", move(0.1)}}}}}.dump();
+  const std::vector<std::vector<std::string>> commands{
+      {"render", kScene, "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "256"},
+      {"render", kScene, "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "16", "--aovs"},
+      {"preprocess", kScene, "-o", at("x"), "--resolution", "1920x1080", "--samples", "64"},
+      {"replay", at("c"), at("slow.json"), "-o", at("run"), "--aovs", "--verify"},
+      {"compare", at("a.exr"), at("b.exr"), "-o", at("compared")},
+      {"plan", at("c"), at("slow.json"), "--json=" + at("plan.json")}};
+  std::map<std::string, bool> before;
+  for (const auto& entry : fs::directory_iterator(at(""))) before[entry.path().string()] = true;
+  for (std::vector<std::string> command : commands) {
+    SCOPED_TRACE(command[0]);
+    command.push_back("--quiet");
+    const pid_t child = start(command);
+    std::this_thread::sleep_for(1200ms);
+    kill(child, SIGTERM);
+    const int code = end_of(child);
+    EXPECT_TRUE(code == 128 + SIGTERM || (code == 10 && command[0] == "compare") || (code == 0 && command[0] == "plan")) << code;
+    for (const auto& entry : fs::directory_iterator(at(""))) {
+      const std::string name = entry.path().filename().string();
+      const bool is_expected = before.contains(entry.path().string()) || name == "run" || name == "compared" || name == "plan.json";
+      EXPECT_TRUE(is_expected) << name << " remains";
+    }
+  }
+  if (fs::exists(at("run")))
+    for (const auto& entry : fs::recursive_directory_iterator(at("run")))
+      EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+}
+
+TEST_F(Interruption, a_limit_on_the_size_of_files_is_a_line_and_not_death) {
+  for (const std::string command : {"preprocess", "render"}) {
+    const std::string output = at(command == "render" ? "x.exr" : "x");
+    const ProgramResult result = run_program({"sh", "-c", "ulimit -f 8; exec \"$0\" \"$@\"", RELOOK_PROGRAM, command, kScene,
+                                              "-o", output, "--resolution", "320x180", "--quiet"});
+    EXPECT_EQ(result.exit_code, 4) << result.output;
+    EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
+    EXPECT_FALSE(fs::exists(output));
+  }
+}
+
+}  // namespace
+}  // namespace relook
