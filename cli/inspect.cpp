@@ -20,6 +20,7 @@ Kind kind_of(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, error)) {
     if (std::filesystem::exists(path / "MANIFEST.json", error)) return Kind::cache;
     if (std::filesystem::exists(path / "report.json", error)) return Kind::run;
+    if (error) throw IoError(path.string(), "cannot be looked into: " + error.message());
     throw InputError(path.string(), "", "neither a cache nor a run");
   }
   if (path.extension() != ".json") return Kind::scene;

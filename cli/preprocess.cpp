@@ -45,6 +45,7 @@ Json summary(const std::string& cache, const Json& manifest) {
 }
 
 ExitCode say_complete(const std::string& cache, const Json& manifest, Console& console) {
+  console.part_done();
   console.line(cache + ": complete already, " + std::to_string(bytes_of_files(manifest)) + " bytes; nothing was done");
   Json result = summary(cache, manifest);
   result["complete"] = true;

@@ -111,7 +111,7 @@ TEST_F(CacheFolder, the_same_command_again_says_that_the_cache_is_complete) {
   fs::create_directory_symlink(at("c"), at("link"));
   EXPECT_EQ(preprocess("link").exit_code, 0);
   EXPECT_EQ(preprocess("c/").exit_code, 0);
-  EXPECT_EQ(preprocess("x/../c/../c").exit_code, 6) << "there is no x";
+  EXPECT_EQ(preprocess("c/../c").exit_code, 0);
 }
 
 TEST_F(CacheFolder, another_cache_is_replaced_only_when_asked) {
@@ -126,7 +126,7 @@ TEST_F(CacheFolder, another_cache_is_replaced_only_when_asked) {
                           {{"--samples", "4"}, "of another --samples (1);"},
                           {{"--max-depth", "3"}, "of another --max-depth (6);"},
                           {{"--shadow-bits", "2"}, "of another --shadow-bits (0);"},
-                          {{"--ray-trees", "50"}, "of another --ray-trees (100.0);"},
+                          {{"--ray-trees", "50"}, "of another --ray-trees (100);"},
                           {{"--disk", "64M"}, "of another --disk (none);"},
                           {{"--camera", "0,2,9:0,1,0:30"}, "of another camera ("},
                           {{"--look", at("look.json")}, "of another scene;"},
@@ -313,9 +313,8 @@ TEST_F(CacheFolder, what_may_not_be_read_is_neither_missing_nor_damaged) {
       EXPECT_NE(result->output.find("Permission denied"), std::string::npos) << result->output;
       EXPECT_FALSE(fs::exists(at("run")));
     }
-    const auto refused =
-        relook_as_nobody({"preprocess", kScene, "-o", at("c"), "--resolution", "40x24", "--quiet", "--overwrite"});
     if (name == "c" || name == "c/trees") {
+      const auto refused = relook_as_nobody({"preprocess", kScene, "-o", at("c"), "--overwrite"});
       expect_line(*refused, 6, "Permission denied");
     }
     fs::permissions(at(name), kept);

@@ -1,5 +1,6 @@
 // Is a cache that is there already the one that is asked for? In words, what it has otherwise.
 #include <algorithm>
+#include <sstream>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -9,7 +10,11 @@
 namespace relook {
 namespace {
 
-std::string number(double value) { return Json(value).dump(); }
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
 
 /// Through the same eye; how wide it sees follows from the resolution, too.
 bool same_view(const Camera& a, const Camera& b) {
