@@ -28,8 +28,8 @@ std::size_t type_bytes(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; 
 Imf::Header header_of(const FilePart& part) {
   Imf::Header header(part.display, part.data);
   header.compression() = part.compression;
-  header.setType(part.is_tiled ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
-  if (part.is_tiled) header.setTileDescription(Imf::TileDescription(4, 4));
+  header.setType(part.tile_size > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+  if (part.tile_size > 0) header.setTileDescription(Imf::TileDescription(part.tile_size, part.tile_size));
   if (!part.name.empty()) header.setName(part.name);
   for (const auto& [name, channel] : part.channels) header.channels().insert(name, Imf::Channel(channel.type));
   for (const auto& [name, value] : part.attributes) header.insert(name, Imf::StringAttribute(value));
@@ -83,7 +83,7 @@ void write_parts(const std::filesystem::path& path, const std::vector<FilePart>&
   for (std::size_t i = 0; i < parts.size(); ++i) {
     std::map<std::string, FilePartChannel> channels = parts[i].channels;
     const Imf::FrameBuffer buffer = frame_buffer(channels, parts[i].data);
-    if (parts[i].is_tiled) {
+    if (parts[i].tile_size > 0) {
       Imf::TiledOutputPart output(file, static_cast<int>(i));
       output.setFrameBuffer(buffer);
       output.writeTiles(0, output.numXTiles() - 1, 0, output.numYTiles() - 1);

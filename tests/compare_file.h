@@ -32,7 +32,7 @@ struct FilePart {
   std::map<std::string, FilePartChannel> channels;
   std::map<std::string, std::string> attributes;
   Imf::Compression compression = Imf::ZIP_COMPRESSION;
-  bool is_tiled = false;  // 4x4
+  unsigned tile_size = 0;  // 0: no tiles, but rows
 
   [[nodiscard]] std::size_t pixels() const;
   /// A channel of floats, the same value everywhere.

@@ -180,6 +180,10 @@ void ImageRows::load(std::int64_t y) {
   require(y >= image_.window.y0 && y < image_.window.y1, "rows are read within an image's window");
   band_ = {};
   const PixelWindow band = band_around(y);
+  if (image_.channels.empty()) {
+    band_ = band;
+    return;
+  }
   const auto width = static_cast<std::size_t>(band.width()), height = static_cast<std::size_t>(band.height());
   samples_.resize(width * height * image_.pixel_bytes());
   as_input(file_.name_, [&] {
