@@ -93,7 +93,7 @@ TEST_F(ConsoleOutput, a_reader_that_has_gone_is_no_error) {
              {{"inspect", at("run"), "--json"}, 0},
              {{"completions", "bash"}, 0},
              {{"check", at("c"), "--progress", "none"}, 0},
-             {{"compare", at("run/frames/0000.exr"), at("run/frames/0001.exr")}, 10},
+             {{"compare", at("run/frames/0000.exr"), at("run/frames/0001.exr"), "--progress", "none"}, 10},
              {{"replay", at("c"), at("j.json"), "-o", at("again"), "--progress", "openjd", "--fresh"}, 0}}) {
       const ProgramResult result = run_unread(output, arguments);
       EXPECT_EQ(result.exit_code, code) << arguments[0] << ": " << result.output;
@@ -104,6 +104,39 @@ TEST_F(ConsoleOutput, a_reader_that_has_gone_is_no_error) {
   }
   close(ends[1]);
   close(sockets[1]);
+}
+
+TEST_F(ConsoleOutput, the_log_of_a_replay_leaves_a_pipe_to_results) {
+  write_file(at("j.json"), std::string_view(kJournal));
+  ASSERT_EQ(
+      run_program({RELOOK_PROGRAM, "preprocess", kScene, "-o", at("c"), "--resolution", "64x36", "--quiet"}).exit_code,
+      0);
+  struct Streams {
+    std::string out, err;
+  };
+  /// `after`: "| cat" for a pipe.
+  const auto replayed = [&](const std::string& options, const std::string& after) {
+    const ProgramResult result = run_program(
+        {"sh", "-c",
+         "cd \"$1\" && \"$2\" replay c j.json -o run --fresh --progress none " + options + " 2>err " + after + " >out",
+         "sh", at(""), RELOOK_PROGRAM});
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return Streams{std::string(text_of(read_file(at("out")))), std::string(text_of(read_file(at("err"))))};
+  };
+  const std::string line = "1 color \"step 1\": ";
+  const Streams file = replayed("", ""), pipe = replayed("", "| cat"), json = replayed("--json", "| cat");
+  EXPECT_TRUE(has(file.out, line)) << file.out;
+  EXPECT_EQ(file.err, "");
+  EXPECT_TRUE(has(pipe.err, line)) << pipe.err;
+  EXPECT_FALSE(has(pipe.out, line)) << pipe.out;
+  EXPECT_TRUE(has(json.err, line)) << json.err;
+  EXPECT_TRUE(parse_json(json.out, "out").contains("runs"));
+  const Streams logged = replayed("--log-json", ""), quiet = replayed("--quiet", "| cat");
+  EXPECT_FALSE(has(logged.out, line)) << logged.out;
+  const Json entry = parse_json(logged.err.substr(0, logged.err.find('\n')), "log");
+  EXPECT_EQ(entry["level"], "info");
+  EXPECT_TRUE(has(entry["message"], "0 base"));
+  EXPECT_EQ(quiet.out + quiet.err, "");
 }
 
 TEST_F(ConsoleOutput, a_full_disk_under_standard_output_is_an_error_after_the_work) {

@@ -55,7 +55,7 @@ Json without_numbers(const Json& value) {
   return result;
 }
 
-/// What a file says apart from when and where: its bytes, or those of its JSON values.
+/// What a file says apart from when and where: its bytes, or those of its JSON values, or the words of an access log.
 std::string content(const std::filesystem::path& path, const std::string& folder) {
   std::string text = text_in(path);
   const std::string suffix = path.extension().string();
@@ -66,6 +66,7 @@ std::string content(const std::filesystem::path& path, const std::string& folder
   for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder))
     text.replace(at, folder.size(), "OUT");
   if (suffix == ".json") return without_numbers(parse_json(text, path.string())).dump();
+  if (suffix.empty()) std::erase_if(text, [](char c) { return c != '\n' && (c < 'a' || c == 'e' || c > 'z'); });
   if (suffix != ".jsonl") return text;
   std::string lines;
   for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
