@@ -82,7 +82,7 @@ class JournalRun {
   std::size_t frame_number_ = 0;           // of the journal, for the tiles that --verify takes
   std::optional<StepReport> step_so_far_;  // the last frame of the present drag or wedge, if it was made here
   ChangeClass step_class_ = ChangeClass::color;  // of its frames so far
-  std::size_t clipped_frames_ = 0;         // that half cannot hold
+  std::size_t clipped_frames_ = 0;               // that half cannot hold
   double runs_before_ = 0, runs_ = 1;            // of the command, for its progress
 };
 

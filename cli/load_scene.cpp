@@ -71,7 +71,8 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
   loaded.document = make_look_document(std::move(imported));
   const bool has_patch = !view.look_patch.empty();
   const Bytes patch = has_patch ? read_input(view.look_patch) : Bytes();
-  if (has_patch) loaded.document = patched(std::move(loaded.document), text_of(patch), input_name(view.look_patch), loaded.files);
+  if (has_patch)
+    loaded.document = patched(std::move(loaded.document), text_of(patch), input_name(view.look_patch), loaded.files);
   std::string digests = content_hash(path, loaded.document);
   if (has_patch) digests += hash128(patch);
   if (view.auto_lights) digests += "lights auto";

@@ -63,9 +63,7 @@ int guarded(const Work& work, const Report& report) {
 }
 
 /// Others read, and write a small file in the end, if any.
-bool makes_pictures(Verb verb) {
-  return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay;
-}
+bool makes_pictures(Verb verb) { return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay; }
 
 ExitCode run(const Arguments& arguments) {
   Interrupt interrupt;

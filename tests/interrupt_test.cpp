@@ -99,7 +99,7 @@ TEST_F(Interruption, a_run_is_left_and_taken_up_by_any_signal_within_steps_drags
   ASSERT_EQ(relook(replay("whole")).exit_code, 0);
   const auto whole = frames("whole");
   const std::vector<std::pair<int, std::string>> signals{
-      {SIGTERM, "frames/0001.exr"},     {SIGINT, "frames/0003_010.exr"}, {SIGHUP, "frames/0003_050.exr"},
+      {SIGTERM, "frames/0001.exr"},     {SIGINT, "frames/0003_010.exr"},  {SIGHUP, "frames/0003_050.exr"},
       {SIGUSR1, "frames/0003_100.exr"}, {SIGUSR2, "frames/0004_020.exr"}, {SIGXCPU, "frames/0004_070.exr"}};
   for (const auto& [signal, after] : signals) {
     SCOPED_TRACE(strsignal(signal));
@@ -136,10 +136,15 @@ TEST_F(Interruption, further_signals_change_nothing) {
 }
 
 TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "640x360", "--samples", "64", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(
+      relook({"preprocess", kScene, "-o", at("c"), "--resolution", "640x360", "--samples", "64", "--quiet"}).exit_code,
+      0);
   ASSERT_EQ(relook({"render", kScene, "-o", at("a.exr"), "--resolution", "2048x1152", "--quiet"}).exit_code, 0);
-  ASSERT_EQ(relook({"render", kScene, "-o", at("b.exr"), "--resolution", "2048x1152", "--lights", "auto", "--quiet"}).exit_code, 0);
-  std::ofstream(at("slow.json")) << Json{{"relook", "journal/1"}, {"steps", {{{"edit", move(0.5)}}, {{"edit", move(0.1)}}}}}.dump();
+  ASSERT_EQ(relook({"render", kScene, "-o", at("b.exr"), "--resolution", "2048x1152", "--lights", "auto", "--quiet"})
+                .exit_code,
+            0);
+  std::ofstream(at("slow.json"))
+      << Json{{"relook", "journal/1"}, {"steps", {{{"edit", move(0.5)}}, {{"edit", move(0.1)}}}}}.dump();
   const std::vector<std::vector<std::string>> commands{
       {"render", kScene, "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "256"},
       {"render", kScene, "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "16", "--aovs"},
@@ -156,10 +161,12 @@ TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
     std::this_thread::sleep_for(1200ms);
     kill(child, SIGTERM);
     const int code = end_of(child);
-    EXPECT_TRUE(code == 128 + SIGTERM || (code == 10 && command[0] == "compare") || (code == 0 && command[0] == "plan")) << code;
+    EXPECT_TRUE(code == 128 + SIGTERM || (code == 10 && command[0] == "compare") || (code == 0 && command[0] == "plan"))
+        << code;
     for (const auto& entry : fs::directory_iterator(at(""))) {
       const std::string name = entry.path().filename().string();
-      const bool is_expected = before.contains(entry.path().string()) || name == "run" || name == "compared" || name == "plan.json";
+      const bool is_expected =
+          before.contains(entry.path().string()) || name == "run" || name == "compared" || name == "plan.json";
       EXPECT_TRUE(is_expected) << name << " remains";
     }
   }
@@ -171,8 +178,8 @@ TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
 TEST_F(Interruption, a_limit_on_the_size_of_files_is_a_line_and_not_death) {
   for (const std::string command : {"preprocess", "render"}) {
     const std::string output = at(command == "render" ? "x.exr" : "x");
-    const ProgramResult result = run_program({"sh", "-c", "ulimit -f 8; exec \"$0\" \"$@\"", RELOOK_PROGRAM, command, kScene,
-                                              "-o", output, "--resolution", "320x180", "--quiet"});
+    const ProgramResult result = run_program({"sh", "-c", "ulimit -f 8; exec \"$0\" \"$@\"", RELOOK_PROGRAM, command,
+                                              kScene, "-o", output, "--resolution", "320x180", "--quiet"});
     EXPECT_EQ(result.exit_code, 4) << result.output;
     EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
     EXPECT_FALSE(fs::exists(output));

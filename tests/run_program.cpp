@@ -98,7 +98,8 @@ void expect_exact_steps(const Json& report, bool plain_names) {
     if (!plain_names) {
       EXPECT_EQ(change, name.substr(0, name.find(':')));
     }
-    const bool is_whole_step = step["drag_frame"].is_null() && step["frame"].get<std::string>().find('_') != std::string::npos;
+    const bool is_whole_step =
+        step["drag_frame"].is_null() && step["frame"].get<std::string>().find('_') != std::string::npos;
     if (!is_whole_step) {
       EXPECT_GT(step["pixels_changed"], 0);
     }
