@@ -170,9 +170,10 @@ TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
       EXPECT_TRUE(is_expected) << name << " remains";
     }
   }
-  if (fs::exists(at("run")))
-    for (const auto& entry : fs::recursive_directory_iterator(at("run")))
-      EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  if (!fs::exists(at("run"))) return;
+  for (const auto& entry : fs::recursive_directory_iterator(at("run"))) {
+    EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
+  }
 }
 
 TEST_F(Interruption, a_limit_on_the_size_of_files_is_a_line_and_not_death) {
