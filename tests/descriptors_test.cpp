@@ -129,6 +129,30 @@ TEST_P(Descriptors, that_are_closed_put_nothing_into_files) {
   }
 }
 
+// The notes of a run are open from its start to its end, but gone when it is complete: a run that is killed shows them.
+TEST(ClosedDescriptors, put_nothing_into_the_notes_of_a_run) {
+  const ScratchFolder folder("notes");
+  std::string journal = R"({"relook": "journal/1", "steps": [)";
+  for (int i = 0; i < 300; ++i)
+    journal += std::string(i == 0 ? "" : ",") +
+               R"({"edit": [{"op": "replace", "path": "/lights/Lamp/intensity", "value": )" + std::to_string(40 + i) +
+               "}]}";
+  write_file(folder / "j.json", journal + "]}");
+  const std::string scene = (kSource / "scenes/spheres/spheres.gltf").string();
+  const std::string script = R"(cd "$1" && "$2" preprocess "$3" -o c --resolution 64x36 --quiet || exit 1
+    "$2" replay c j.json -o run --verify 2>&- >/dev/null &
+    until [ -e run/frames/0003.exr ] || ! kill -0 $!; do sleep 0.01; done
+    kill -9 $! && test -s run/progress.jsonl)";
+  const ProgramResult result = run_program({"sh", "-c", script, "sh", (folder / "").string(), RELOOK_PROGRAM, scene});
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const std::string notes = text_in(folder / "run/progress.jsonl");
+  for (std::size_t begin = 0, end = 0; (end = notes.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    const std::string note = notes.substr(begin, end - begin);
+    EXPECT_TRUE(Json::accept(note.substr(std::min(note.find('{'), note.size())))) << note;  // after a hash
+    EXPECT_EQ(note.find(" %"), std::string::npos) << note;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Verbs, Descriptors, testing::ValuesIn(kVerbs),
                          [](const auto& verb) { return verb.param.name; });
 

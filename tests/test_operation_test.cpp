@@ -18,9 +18,10 @@ Json look_at(const SceneState& state, const std::string& pointer) {
 /// What there is to refer to besides the fixture's own: variants, a displaced node.
 SceneState rich_state() {
   ImportedGltf imported = small_gltf();
-  imported.gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "Day"}}, {{"name", "Night"}}};
-  Json mappings = Json::array({{{"material", 1}, {"variants", {0, 1}}}});
-  imported.gltf["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = mappings;
+  imported.gltf["extensions"]["KHR_materials_variants"] =
+      Json::parse(R"({"variants": [{"name": "Day"}, {"name": "Night"}]})");
+  imported.gltf["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"] =
+      Json::parse(R"({"mappings": [{"material": 1, "variants": [0, 1]}]})");
   LookDocument document = make_look_document(std::move(imported));
   Camera camera = choose_camera(document, "Lens", 64, 48);
   return {std::move(document), std::move(camera), small_pyramids()};
