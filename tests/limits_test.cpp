@@ -8,6 +8,7 @@
 #include "base/byte_columns.h"
 #include "base/error.h"
 #include "edit/apply.h"
+#include "engine/frame_layers.h"
 #include "engine/layered_frame.h"
 #include "engine/replay.h"
 #include "layer_file.h"
