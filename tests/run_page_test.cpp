@@ -116,7 +116,7 @@ TEST(RunPage, memory_does_not_follow_the_number_of_steps) {
   GTEST_SKIP() << "sanitizers keep what is freed";
 #endif
   const ScratchFolder folder("page_memory");
-  SyntheticRun run(folder / "run", 320, 200, all_changes);
+  SyntheticRun run(folder / "run", 64, 40, all_changes);
   for (std::size_t i = 0; i < 20; ++i) run.add(i);
   for (std::size_t i = 20; i < 8000; ++i) run.add_linked(i, i % 20);
   const auto peak_of_page = [&](std::size_t count) {

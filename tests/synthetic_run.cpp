@@ -6,6 +6,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "engine/frame_file.h"
 #include "engine/preview.h"
 #include "page/run_page.h"
@@ -27,6 +28,7 @@ std::string numbered(std::size_t step) {
 
 SyntheticRun::SyntheticRun(std::filesystem::path folder, std::uint32_t width, std::uint32_t height, Pixel pixel)
     : folder_(std::move(folder)), width_(width), height_(height), pixel_(std::move(pixel)) {
+  set_thread_count(1);  // to wake others takes longer than a tile of these frames
   std::filesystem::create_directories(folder_ / "frames");
   std::filesystem::create_directories(folder_ / "previews");
   head = {{"program", "0"},

@@ -50,11 +50,15 @@ bool are_equal(const std::vector<FrameTiles::Channel>& a, const std::vector<Fram
 
 std::vector<Bytes> RunPixels::packed_colors() const {
   std::vector<Bytes> packed(current_.count());
-  const bool has_layers = channels_.size() < current_.channels().size();
-  parallel_for(current_.count(), [&](std::size_t tile) {
-    const BytesView stored = current_.packed(tile);
-    packed[tile] = has_layers ? TileCompressor().zip(colors_of(current_, tile)) : Bytes(stored.begin(), stored.end());
-  });
+  if (channels_.size() < current_.channels().size()) {  // there are layers
+    parallel_for(packed.size(),
+                 [&](std::size_t tile) { packed[tile] = TileCompressor().zip(colors_of(current_, tile)); });
+  } else {
+    for (std::size_t tile = 0; tile < packed.size(); ++tile) {
+      const BytesView stored = current_.packed(tile);
+      packed[tile].assign(stored.begin(), stored.end());
+    }
+  }
   return packed;
 }
 

@@ -35,7 +35,7 @@ class LongPage(ReportPage):
         last = f"{self.expected['labels'][rows - 1]} {self.expected['names'][rows - 1]}"
         self.window.key("End")
         self.window.wait(MARKED, last)
-        self.window.screenshot(self.folder / "long_sheet.png")
+        self.window.screenshot(self.folder / f"long_{self.expected['rows']}_sheet.png")
         self.window.wait("return document.querySelector('.card[aria-current=true] img').naturalWidth > 0")
         self.window.key("Enter")
         self.wait_for(rows - 1)
@@ -78,12 +78,12 @@ class LongPage(ReportPage):
             self.check(0 < previews < len(self.expected["pixels"]), f"{previews} of {len(self.expected['pixels'])} are previews")
         else:
             self.check(previews == 0, f"{previews} previews instead of pixels")
-        self.window.screenshot(self.folder / "long_step.png")
+        self.window.screenshot(self.folder / f"long_{self.expected['rows']}_step.png")
 
     def plots(self):
         self.window.run("location.hash = 'plots'")
         self.window.wait("return document.querySelectorAll('#plots canvas').length >= 4")
-        self.window.screenshot(self.folder / "long_plots.png")
+        self.window.screenshot(self.folder / f"long_{self.expected['rows']}_plots.png")
 
 
 def main(run, expected_file, screenshots):
