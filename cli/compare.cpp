@@ -127,7 +127,7 @@ std::optional<RunTable> read_table(const std::vector<std::string>& inputs, Conso
 }
 
 void write_json(const Arguments& arguments, const Json& result, Console& console) {
-  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = json_text(result, 2) + "\n";
   console.json(result);
   if (!arguments.json_file.empty()) write_file(arguments.json_file, text);
   if (arguments.output.empty()) return;

@@ -114,7 +114,7 @@ void Console::line(std::string_view text) {
 }
 
 void Console::log_line(std::string_view text) {
-  if (quiet_) return;
+  if (quiet_ || (json_ && style_ == ProgressStyle::none)) return;
   end_stage();
   if (logs_json_)
     log("info", {{"message", printable(text)}});
@@ -125,7 +125,7 @@ void Console::log_line(std::string_view text) {
 }
 
 void Console::json(const Json& result) {
-  if (json_) output_.print(result.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  if (json_) output_.print(json_text(result, 2) + "\n");
 }
 
 void Console::warn(const std::vector<std::string>& warnings) {

@@ -127,7 +127,7 @@ void print_look(const Arguments& arguments, Kind kind, Console& console) {
   } else {
     look = load_cache(input).document.look;
   }
-  console.print(look.dump(2) + "\n");
+  console.print(json_text(look, 2) + "\n");
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
   std::snprintf(total, sizeof total, "%zu frames: %.3f s without writing, at most %.1f M resident", frame_count,
                 seconds, static_cast<double>(most_bytes) / (1 << 20));
   console.line(total);
-  if (!arguments.json_file.empty()) write_file(arguments.json_file, result.dump(2) + "\n");
+  if (!arguments.json_file.empty()) write_file(arguments.json_file, json_text(result, 2) + "\n");
   console.json(result);
   return ExitCode::ok;
 }

@@ -177,16 +177,16 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   require_sound(read_manifest(cache, manifest), cache);
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, view.get());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
-  std::optional<ReplayCommand> command;
+  // Also for runs that are complete: the cache and the journals must be as the command says.
+  ReplayCommand command(arguments, console, journals, plans, manifest, view);
   std::uint64_t pixels_different = 0;
   Json runs = Json::array();
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const bool is_complete = plans[i].is_complete();
-    if (!is_complete && !command) command.emplace(arguments, console, journals, plans, manifest, view);
     if (is_complete)
       console.line(printable(plans[i].folder().string()) + ": complete, all " + std::to_string(plans[i].frames()) +
                    " frames are there");
-    pixels_different += is_complete ? plans[i].pixels_different() : command->run(i);
+    pixels_different += is_complete ? plans[i].pixels_different() : command.run(i);
     runs.push_back(result_json(arguments, plans[i]));
   }
   console.json({{"runs", std::move(runs)}, {"pixels_different", pixels_different}});

@@ -42,7 +42,7 @@ void TraceFile::write() const {
   if (path_.empty()) return;
   const Uninterrupted to_the_end;
   const Json document{{"relook", "trace/1"}, {"displayTimeUnit", "ms"}, {"traceEvents", events_}};
-  write_file(path_, document.dump() + "\n");
+  write_file(path_, json_text(document) + "\n");
 }
 
 }  // namespace relook

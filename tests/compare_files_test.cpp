@@ -342,7 +342,7 @@ TEST_F(CompareFiles, deep_and_subsampled_files_are_refused) {
 
 void read_all(BytesView bytes) {
   const ExrFile file({bytes.begin(), bytes.end()}, "damaged.exr");
-  for (const StoredImage& image : file.images()) {
+  for (const ExrImage& image : file.images()) {
     ImageRows rows(file, image);
     for (std::int64_t y = image.window.y0; y < image.window.y1; ++y)
       if (!rows.holds(y)) rows.load(y);

@@ -83,7 +83,7 @@ std::string escaped_html(std::string_view text) {
 }
 
 std::string script_json(const Json& value) {
-  const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = json_text(value);
   std::string escaped;
   escaped.reserve(text.size() + text.size() / 64);
   for (const char c : text) {

@@ -115,7 +115,7 @@ class Details {
     Json& list = json_[key] = Json::array();
     for (std::size_t i = 0; i < count; ++i) {
       Json next = item(i);
-      const std::size_t bytes = next.dump(-1, ' ', false, Json::error_handler_t::replace).size();
+      const std::size_t bytes = json_text(next).size();
       if (bytes > left_bytes_) {
         json_["cut"] = true;
         return;

@@ -132,6 +132,10 @@ Json parse_json(std::string_view text, std::string_view file) {
   return builder.take();
 }
 
+std::string json_text(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string escape_token(std::string_view token) {
   std::string escaped;
   escaped.reserve(token.size());

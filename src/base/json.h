@@ -18,6 +18,9 @@ using Json = nlohmann::json;
 /// finite doubles, and trailing text. Throws InputError{file, "byte N" or pointer, ...}.
 [[nodiscard]] Json parse_json(std::string_view text, std::string_view file);
 
+/// As text, in one line or with an indent; bytes that are not UTF-8, as in the names of files, are replaced.
+[[nodiscard]] std::string json_text(const Json& value, int indent = -1);
+
 /// One token of a JSON pointer, escaped ("~" to "~0", "/" to "~1").
 [[nodiscard]] std::string escape_token(std::string_view token);
 /// The unescaped tokens of a JSON pointer. Throws InputError when it does not start with "/" or has a bad escape.

@@ -205,7 +205,7 @@ Bytes encode_geometry(const LookDocument& document, const CacheIdentity& identit
   for (const auto& [node, matrices] : document.instances) append(instances, matrices);
 
   ContainerWriter writer;
-  writer.add("names", bytes_of(names_entry(document).dump()));
+  writer.add("names", bytes_of(json_text(names_entry(document))));
   writer.add_column("positions", all.positions, 4);
   writer.add_column("triangles", all.triangles, 4);
   writer.add_column("normals", all.normals, 4);

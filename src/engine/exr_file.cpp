@@ -80,7 +80,7 @@ std::vector<StoredChannel> stored_channels(const Imf::Header& header, const std:
 }
 
 /// Requires: what OpenEXR keeps for a part is in proportion to its file, and a band of it fits in memory.
-void check_size(const Imf::Header& header, const StoredImage& image, std::size_t file_bytes, const std::string& file) {
+void check_size(const Imf::Header& header, const ExrImage& image, std::size_t file_bytes, const std::string& file) {
   const std::int64_t width = image.window.width(), height = image.window.height();
   const auto pixel_bytes = static_cast<std::int64_t>(image.pixel_bytes());
   bool is_read = is_read_size(width, height);
@@ -102,7 +102,7 @@ void check_size(const Imf::Header& header, const StoredImage& image, std::size_t
 
 }  // namespace
 
-std::size_t StoredImage::pixel_bytes() const {
+std::size_t ExrImage::pixel_bytes() const {
   std::size_t bytes = 0;
   for (const StoredChannel& channel : channels) bytes += sample_bytes(channel.kind);
   return bytes;
@@ -128,7 +128,7 @@ std::size_t ExrFile::part_count() const { return static_cast<std::size_t>(input_
 
 void ExrFile::read_part(int part) {
   const Imf::Header& header = input_->file.header(part);
-  StoredImage image;
+  ExrImage image;
   if (header.hasName()) image.part = header.name();
   if (header.hasType() && Imf::isDeepData(header.type()))
     throw InputError(name_, image.part, "deep data is not compared");
@@ -155,7 +155,7 @@ void ExrFile::read_part(int part) {
   }
 }
 
-ImageRows::ImageRows(const ExrFile& file, const StoredImage& image) : file_(file), image_(image) {
+ImageRows::ImageRows(const ExrFile& file, const ExrImage& image) : file_(file), image_(image) {
   const Imf::Header& header = file.input_->file.header(static_cast<int>(image.part_index));
   const auto row_bytes =
       std::max<std::int64_t>(1, image.window.width() * static_cast<std::int64_t>(image.pixel_bytes()));

@@ -35,7 +35,7 @@ struct StoredChannel {
 };
 
 /// A part at one level of its resolution.
-struct StoredImage {
+struct ExrImage {
   std::string part;  // its name; "" when it has none
   std::size_t part_index = 0;
   int level_x = 0, level_y = 0;         // 0: full size
@@ -56,7 +56,7 @@ class ExrFile {
   [[nodiscard]] const PixelWindow& display() const { return display_; }
   [[nodiscard]] std::size_t part_count() const;
   /// Part by part; in a part by levels, full size first.
-  [[nodiscard]] const std::vector<StoredImage>& images() const { return images_; }
+  [[nodiscard]] const std::vector<ExrImage>& images() const { return images_; }
   /// The names of all parts' Cryptomattes, from their headers ("CryptoObject").
   [[nodiscard]] const std::vector<std::string>& cryptomattes() const { return cryptomattes_; }
 
@@ -69,7 +69,7 @@ class ExrFile {
   Bytes bytes_;
   std::string name_;
   PixelWindow display_;
-  std::vector<StoredImage> images_;
+  std::vector<ExrImage> images_;
   std::vector<std::string> cryptomattes_;
   std::unique_ptr<Input> input_;
 };
@@ -78,9 +78,9 @@ class ExrFile {
 class ImageRows {
  public:
   /// Requires: a file that outlives this, and one of its images.
-  ImageRows(const ExrFile& file, const StoredImage& image);
+  ImageRows(const ExrFile& file, const ExrImage& image);
 
-  [[nodiscard]] const StoredImage& image() const { return image_; }
+  [[nodiscard]] const ExrImage& image() const { return image_; }
   [[nodiscard]] bool holds(std::int64_t y) const { return y >= band_.y0 && y < band_.y1; }
   /// Decodes a band of rows with row `y` in it. Requires: a row of the image's window. Throws InputError.
   void load(std::int64_t y);
@@ -91,7 +91,7 @@ class ImageRows {
   [[nodiscard]] PixelWindow band_around(std::int64_t y) const;
 
   const ExrFile& file_;
-  const StoredImage& image_;
+  const ExrImage& image_;
   std::int64_t band_rows_;
   PixelWindow band_;
   Bytes samples_;                     // channel by channel, [height of band_ * width]

@@ -10,10 +10,10 @@ namespace relook {
 namespace {
 
 struct ImagePair {
-  const StoredImage *a = nullptr, *b = nullptr;  // one may be missing
+  const ExrImage *a = nullptr, *b = nullptr;  // one may be missing
 };
 
-bool is_same_place(const StoredImage& a, const StoredImage& b) {
+bool is_same_place(const ExrImage& a, const ExrImage& b) {
   if (a.level_x != b.level_x || a.level_y != b.level_y) return false;
   if (a.part.empty() || b.part.empty()) return a.part_index == 0 && b.part_index == 0;
   return a.part == b.part;
@@ -22,20 +22,20 @@ bool is_same_place(const StoredImage& a, const StoredImage& b) {
 /// In the order of the first file; what only the second has comes last.
 std::vector<ImagePair> matched(const ExrFile& a, const ExrFile& b) {
   std::vector<ImagePair> pairs;
-  std::vector<const StoredImage*> rest;
-  for (const StoredImage& image : b.images()) rest.push_back(&image);
-  for (const StoredImage& image : a.images()) {
+  std::vector<const ExrImage*> rest;
+  for (const ExrImage& image : b.images()) rest.push_back(&image);
+  for (const ExrImage& image : a.images()) {
     const auto found =
-        std::ranges::find_if(rest, [&](const StoredImage* other) { return is_same_place(image, *other); });
+        std::ranges::find_if(rest, [&](const ExrImage* other) { return is_same_place(image, *other); });
     pairs.push_back({&image, found == rest.end() ? nullptr : *found});
     if (found != rest.end()) rest.erase(found);
   }
-  for (const StoredImage* image : rest) pairs.push_back({nullptr, image});
+  for (const ExrImage* image : rest) pairs.push_back({nullptr, image});
   return pairs;
 }
 
 /// Has it R, G and B, and A if at all, in numbers that are colours?
-bool is_picture(const StoredImage& image) {
+bool is_picture(const ExrImage& image) {
   std::size_t colors = 0;
   for (const StoredChannel& channel : image.channels) {
     if (layer_name(channel.name) != "RGBA" || channel.name.size() != 1) continue;
@@ -45,7 +45,7 @@ bool is_picture(const StoredImage& image) {
   return colors == 3;
 }
 
-const StoredImage* picture_of(const ExrFile& file) {
+const ExrImage* picture_of(const ExrFile& file) {
   const auto found = std::ranges::find_if(file.images(), is_picture);
   return found == file.images().end() ? nullptr : &*found;
 }
@@ -61,14 +61,14 @@ std::string size_text(const PixelWindow& window) {
   return std::to_string(window.width()) + "x" + std::to_string(window.height());
 }
 
-std::string level_text(const StoredImage& image) {
+std::string level_text(const ExrImage& image) {
   if (image.level_x == 0 && image.level_y == 0) return "";
   if (image.level_x == image.level_y) return std::to_string(image.level_x);
   return std::to_string(image.level_x) + "," + std::to_string(image.level_y);
 }
 
 void set_place(std::vector<LayerDifference>& layers, const ImagePair& pair, bool has_parts) {
-  const StoredImage& image = pair.a != nullptr && (pair.b == nullptr || !pair.a->part.empty()) ? *pair.a : *pair.b;
+  const ExrImage& image = pair.a != nullptr && (pair.b == nullptr || !pair.a->part.empty()) ? *pair.a : *pair.b;
   for (LayerDifference& layer : layers) {
     if (has_parts) layer.part = image.part;
     layer.level = level_text(image);
@@ -133,7 +133,7 @@ FileComparison compare_exr_files(const ExrFile& a, const ExrFile& b, const Thres
   std::vector<std::string> cryptomattes = a.cryptomattes();
   cryptomattes.insert(cryptomattes.end(), b.cryptomattes().begin(), b.cryptomattes().end());
   const LayerRules rules{thresholds, cryptomattes};
-  const StoredImage *picture_a = picture_of(a), *picture_b = picture_of(b);
+  const ExrImage *picture_a = picture_of(a), *picture_b = picture_of(b);
   FileComparison files;
   std::optional<KeptPictures> pictures;
   for (const ImagePair& pair : matched(a, b)) {

@@ -36,7 +36,7 @@ bool is_cryptomatte_rank(const std::string& layer, std::span<const std::string> 
   });
 }
 
-std::vector<OpenLayer> open_layers(const StoredImage& a, const StoredImage& b,
+std::vector<OpenLayer> open_layers(const ExrImage& a, const ExrImage& b,
                                    std::span<const std::string> cryptomattes) {
   std::map<std::string, ChannelPair> pairs;
   for (std::size_t i = 0; i < a.channels.size(); ++i) pairs[a.channels[i].name].a = i;
@@ -172,8 +172,8 @@ std::vector<LayerDifference> compare_layers(ImageRows& a, ImageRows& b, const Pi
   return differences;
 }
 
-std::vector<LayerDifference> lacking_layers(const StoredImage& image, bool is_a) {
-  StoredImage nothing = image;
+std::vector<LayerDifference> lacking_layers(const ExrImage& image, bool is_a) {
+  ExrImage nothing = image;
   nothing.channels.clear();
   std::vector<LayerDifference> differences;
   for (OpenLayer& layer : is_a ? open_layers(image, nothing, {}) : open_layers(nothing, image, {}))

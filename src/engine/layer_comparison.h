@@ -50,7 +50,7 @@ struct LayerRules {
 [[nodiscard]] std::vector<LayerDifference> compare_layers(ImageRows& a, ImageRows& b, const PixelWindow& window,
                                                           const LayerRules& rules, KeptPictures* pictures);
 /// An image that one of the files lacks. `is_a`: it is the first file's.
-[[nodiscard]] std::vector<LayerDifference> lacking_layers(const StoredImage& image, bool is_a);
+[[nodiscard]] std::vector<LayerDifference> lacking_layers(const ExrImage& image, bool is_a);
 
 /// "part left, level 1, layer depth".
 [[nodiscard]] std::string layer_place(const LayerDifference& difference);

@@ -101,12 +101,12 @@ void ProgressFile::append_line(std::string_view text) {
 }
 
 void ProgressFile::append(const Json& entry) {
-  append_line(entry.dump(-1, ' ', false, Json::error_handler_t::replace));
+  append_line(json_text(entry));
 }
 
 void ProgressFile::begin(const Json& source) {
   append_line(std::string("{\"relook\":\"") + std::string(kFormat) +
-              "\",\"source\":" + source.dump(-1, ' ', false, Json::error_handler_t::replace) + "}");
+              "\",\"source\":" + json_text(source) + "}");
 }
 
 bool ProgressFile::lock_all_steps() {

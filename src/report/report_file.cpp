@@ -5,25 +5,17 @@
 #include "report/line_reader.h"
 
 namespace relook {
-namespace {
-
-std::string text_of_json(const Json& value, int indent = -1) {
-  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-}  // namespace
-
 ReportFile::ReportFile(const std::filesystem::path& path, const Json& head) : path_(path), file_(path) {
   Json rest = head;
   rest.erase("relook");
-  const std::string text = text_of_json(rest, 2);  // "{\n  ...\n}"
-  file_.append("{\n  \"relook\": " + text_of_json(head.at("relook")) + ",\n");
+  const std::string text = json_text(rest, 2);  // "{\n  ...\n}"
+  file_.append("{\n  \"relook\": " + json_text(head.at("relook")) + ",\n");
   file_.append(std::string_view(text).substr(2, text.size() - 4));
   file_.append(std::string(",\n").append(kStepsLine));
 }
 
 void ReportFile::add(const Json& entry) {
-  const std::string text = text_of_json(entry);
+  const std::string text = json_text(entry);
   file_.append(lines_.empty() ? "\n" : ",\n");
   lines_.emplace_back(file_.size(), static_cast<std::uint32_t>(text.size()));
   file_.append(text);
@@ -35,8 +27,8 @@ void ReportFile::add(const Json& entry) {
 void ReportFile::publish() {
   file_.append(std::string("\n").append(kStepsEnd).append("\n  \"frames\": {"));
   for (std::size_t i = 0; i < frames_.size(); ++i)
-    file_.append((i == 0 ? "\n    " : ",\n    ") + text_of_json(frames_[i].first) + ": " +
-                 text_of_json(frames_[i].second));
+    file_.append((i == 0 ? "\n    " : ",\n    ") + json_text(frames_[i].first) + ": " +
+                 json_text(frames_[i].second));
   file_.append("\n  }\n}\n");
   file_.publish();
 }
