@@ -17,9 +17,10 @@ ObjectLevels::ObjectLevels(const RayScene& scene, MemoryMonitor monitor)
 
 void ObjectLevels::note_changed(std::span<const ObjectId> objects) {
   if (objects_ != scene_.size() || levels_.size() > kMostKept) {
-    levels_.clear();
+    auto none_built = std::make_unique<std::atomic<const Tracer::TopLevel*>[]>(scene_.size());
+    by_object_ = std::move(none_built);
     objects_ = scene_.size();
-    by_object_ = std::make_unique<std::atomic<const Tracer::TopLevel*>[]>(objects_);
+    levels_.clear();
     return;
   }
   for (const ObjectId id : objects)

@@ -1,31 +1,23 @@
 #include "trace/tracer.h"
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <new>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
 #include "base/error.h"
-#include "base/parallel.h"
+#include "trace/embree_device.h"
 #include "trace/surface.h"
 
 namespace relook {
 
 struct Tracer::TopLevel::Impl {
-  struct ReleaseScene {
-    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-  };
   /// Objects under one Embree scene.
   struct Layer {
-    std::unique_ptr<RTCSceneTy, ReleaseScene> scene;  // null: no objects
+    SceneHandle scene;                                // null: no objects
     std::vector<Placed> placed;                       // by instance id; object null: hidden
     std::vector<std::shared_ptr<const Mesh>> meshes;  // keeps what the bottom levels point into
   };
@@ -55,6 +47,7 @@ struct Query
   float slack = 0;                             // intersect()
   std::vector<Crossing>* crossings = nullptr;  // passes(), blockers()
   bool opaque_too = false;                     // blockers()
+  bool is_short_of_memory = false;             // crossings are missing
 };
 
 void start(Query& query, const std::vector<Tracer::Placed>& placed) {
@@ -106,7 +99,12 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
     return;
   }
   if (!placed.object->optics.passes_light && !query.opaque_too) return;  // the segment ends here
-  query.crossings->push_back({placed.id, hit, RTCRayN_tfar(args->ray, 1, 0), placed.object->key});
+  try {
+    query.crossings->push_back({placed.id, hit, RTCRayN_tfar(args->ray, 1, 0), placed.object->key});
+  } catch (const std::exception&) {  // which Embree would take for its own
+    query.is_short_of_memory = true;
+    return;  // the segment ends here, to be thrown away
+  }
   args->valid[0] = 0;
 }
 
@@ -114,11 +112,6 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
 void reject_hidden(const RTCFilterFunctionNArguments* args) {
   const auto& query = *reinterpret_cast<const Query*>(args->context);
   if ((*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)].object == nullptr) args->valid[0] = 0;
-}
-
-bool report_memory(void* monitor, ssize_t bytes, bool /*is_done*/) {
-  (*static_cast<const MemoryMonitor*>(monitor))(bytes);
-  return true;
 }
 
 bool is_traceable(const Ray& ray) {
@@ -197,88 +190,68 @@ void put_in_order(std::vector<Crossing>& crossings) {
 
 struct Tracer::Impl {
   using Layer = TopLevel::Impl::Layer;
-  MemoryMonitor monitor;
-  RTCDevice device = nullptr;
+  EmbreeDevice device;
   bool count_blockers;
   struct BottomLevel {
     std::weak_ptr<const Mesh> mesh;  // expired: the address may belong to another mesh by now
-    RTCScene scene = nullptr;
+    SceneHandle scene;               // built
   };
   std::map<std::pair<const Mesh*, bool>, BottomLevel> bottom_levels;  // by mesh and whether it reports crossings
 
-  // At most AVX2: hosts that share a cache must agree in every bit, so they must run the same code.
-  Impl(bool counts, MemoryMonitor m)
-      : monitor(std::move(m)), device(rtcNewDevice("max_isa=avx2")), count_blockers(counts) {
-    if (device == nullptr) throw std::bad_alloc();
-    if (monitor) rtcSetDeviceMemoryMonitorFunction(device, report_memory, &monitor);
-  }
-  ~Impl() {
-    for (auto& [mesh, level] : bottom_levels) rtcReleaseScene(level.scene);
-    rtcReleaseDevice(device);
-  }
-
-  /// After building: Embree reports what went wrong only on request, and leaves its own float mode behind.
-  void check() const {
-    set_float_mode();
-    const RTCError error = rtcGetDeviceError(device);
-    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
-    require(error == RTC_ERROR_NONE, "Embree builds its acceleration structures");
-  }
+  Impl(bool counts, MemoryMonitor monitor) : device(std::move(monitor)), count_blockers(counts) {}
 
   /// Drops the bottom levels of meshes that no object uses any more.
   void drop_unused() {
-    std::erase_if(bottom_levels, [](auto& entry) {
-      if (!entry.second.mesh.expired()) return false;
-      rtcReleaseScene(entry.second.scene);
-      return true;
-    });
-  }
-
-  RTCScene new_scene() const {
-    RTCScene scene = rtcNewScene(device);
-#if RTC_VERSION_MAJOR >= 4
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
-#else
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
-#endif
-    return scene;
+    std::erase_if(bottom_levels, [](auto& entry) { return entry.second.mesh.expired(); });
   }
 
   /// `reports_crossings`: shadow segments ask collect_crossings() at each hit; otherwise the first hit blocks them.
   RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh, bool reports_crossings) {
-    BottomLevel& level = bottom_levels[{mesh.get(), reports_crossings}];
-    if (level.scene != nullptr && level.mesh.lock() == mesh) return level.scene;
-    if (level.scene != nullptr) rtcReleaseScene(level.scene);
-    level.mesh = mesh;
-    level.scene = new_scene();
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::pair key(mesh.get(), reports_crossings);
+    if (const auto known = bottom_levels.find(key); known != bottom_levels.end()) {
+      if (known->second.mesh.lock() == mesh) return known->second.scene.get();
+      bottom_levels.erase(known);
+    }
+    BottomLevel level{mesh, build_bottom_level(*mesh, reports_crossings)};  // whole, or not among the others
+    return bottom_levels.emplace(key, std::move(level)).first->second.scene.get();
+  }
+
+  SceneHandle build_bottom_level(const Mesh& mesh, bool reports_crossings) {
+    SceneHandle scene = device.new_scene();
+    const GeometryHandle handle = device.new_geometry(RTC_GEOMETRY_TYPE_TRIANGLE);
+    const RTCGeometry geometry = handle.get();
     // Embree reads 16 bytes at the last vertex, so it gets a copy of its own.
     auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh->positions.size()));
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
     auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh->triangles.size()));
-    if (positions == nullptr || triangles == nullptr) throw std::bad_alloc();
-    for (const Point& p : mesh->positions) positions = std::copy_n(&p.x, 3, positions);
-    for (const auto& t : mesh->triangles) triangles = std::copy_n(t.data(), 3, triangles);
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+    if (positions == nullptr || triangles == nullptr) {
+      device.check();
+      throw std::bad_alloc();
+    }
+    for (const Point& p : mesh.positions) positions = std::copy_n(&p.x, 3, positions);
+    for (const auto& t : mesh.triangles) triangles = std::copy_n(t.data(), 3, triangles);
     rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
     if (reports_crossings) rtcSetGeometryOccludedFilterFunction(geometry, collect_crossings);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(level.scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(level.scene);
-    return level.scene;
+    rtcAttachGeometry(scene.get(), geometry);
+    rtcCommitScene(scene.get());
+    device.check();
+    return scene;
   }
 
-  RTCGeometry new_instance(const RayObject& object) {
+  GeometryHandle new_instance(const RayObject& object) {
     const bool reports_crossings = object.optics.passes_light || object.optics.cut_out || count_blockers;
-    RTCGeometry instance = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(instance, bottom_level(object.mesh, reports_crossings));
+    const RTCScene bottom = bottom_level(object.mesh, reports_crossings);
+    GeometryHandle handle = device.new_geometry(RTC_GEOMETRY_TYPE_INSTANCE);
+    const RTCGeometry instance = handle.get();
+    rtcSetGeometryInstancedScene(instance, bottom);
     float columns[12];  // 3x4, column by column: Imath's rows are Embree's columns
     for (int column = 0; column < 4; ++column)
       std::copy_n(object.to_world[column], 3, columns + std::ptrdiff_t{3} * column);
     rtcSetGeometryTransform(instance, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     rtcCommitGeometry(instance);
-    return instance;
+    return handle;
   }
 
   Layer build(std::span<const Placed> objects) {
@@ -291,16 +264,15 @@ struct Tracer::Impl {
     // others; boxes of instances are rounded, so at silhouettes the two could disagree. Twice the same object makes it
     // a child.
     if (layer.placed.size() == 1) layer.placed.push_back(layer.placed.front());
-    layer.scene.reset(new_scene());
+    layer.scene = device.new_scene();
     for (std::size_t i = 0; i < layer.placed.size(); ++i) {
       const RayObject& object = *layer.placed[i].object;
-      RTCGeometry instance = new_instance(object);
-      rtcAttachGeometryByID(layer.scene.get(), instance, static_cast<unsigned>(i));
-      rtcReleaseGeometry(instance);
+      const GeometryHandle instance = new_instance(object);
+      rtcAttachGeometryByID(layer.scene.get(), instance.get(), static_cast<unsigned>(i));
       layer.meshes.push_back(object.mesh);
     }
     rtcCommitScene(layer.scene.get());
-    check();
+    device.check();
     return layer;
   }
 };
@@ -336,8 +308,10 @@ Tracer::TopLevel Tracer::build(const RayScene& scene) {
 
 void Tracer::replace(TopLevel& level, std::span<const ObjectId> hidden, std::span<const Placed> added) {
   if (!level.impl_) level = build(std::span<const Placed>());
+  TopLevel::Impl::Layer overlay = impl_->build(added);  // first: where memory is short, the level stays as it is
   TopLevel::Impl& top = *level.impl_;
   std::vector<Placed>& placed = top.base.placed;
+  top.hidden.reserve(placed.size() < 2 * hidden.size() ? placed.size() : 2 * hidden.size());
   for (const auto& [instance, object] : top.hidden) placed[instance].object = object;
   top.hidden.clear();
   for (const ObjectId id : hidden) {
@@ -346,7 +320,7 @@ void Tracer::replace(TopLevel& level, std::span<const ObjectId> hidden, std::spa
       if (placed[instance].object != nullptr)
         top.hidden.emplace_back(instance, std::exchange(placed[instance].object, nullptr));
   }
-  top.overlay = impl_->build(added);
+  top.overlay = std::move(overlay);
 }
 
 Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
@@ -371,10 +345,11 @@ bool Tracer::passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>
   query.ray = &ray;
   query.crossings = &crossings;
   const bool any_hidden = !top.hidden.empty();
-  if (top.meets_base() && is_blocked(top.base.scene.get(), top.base.placed, any_hidden, query)) return false;
-  if (top.meets_overlay() && is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query)) return false;
-  put_in_order(crossings);
-  return true;
+  const bool is_free = !(top.meets_base() && is_blocked(top.base.scene.get(), top.base.placed, any_hidden, query)) &&
+                       !(top.meets_overlay() && is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query));
+  if (query.is_short_of_memory) throw std::bad_alloc();
+  if (is_free) put_in_order(crossings);
+  return is_free;
 }
 
 void Tracer::blockers(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings) {
@@ -388,6 +363,7 @@ void Tracer::blockers(const TopLevel& level, const Ray& ray, std::vector<Crossin
   query.opaque_too = true;
   if (top.meets_base()) is_blocked(top.base.scene.get(), top.base.placed, false, query);
   if (top.meets_overlay()) is_blocked(top.overlay.scene.get(), top.overlay.placed, false, query);
+  if (query.is_short_of_memory) throw std::bad_alloc();
   put_in_order(crossings);
 }
 

@@ -42,8 +42,8 @@ struct Crossing {
   bool operator==(const Crossing&) const = default;
 };
 
-/// Told how many bytes acceleration structures are about to take; negative: have given back. Called from any thread;
-/// does not throw.
+/// Told how many bytes acceleration structures are about to take; negative: have given back. Called from any thread.
+/// What it throws about bytes to be taken ends the building, which throws it in turn.
 using MemoryMonitor = std::function<void(std::int64_t bytes)>;
 
 class Tracer {
@@ -74,7 +74,8 @@ class Tracer {
   Tracer& operator=(const Tracer&) = delete;
 
   /// Objects that are not alive are left out. A change of an object's geometry or of what its optics let through needs
-  /// a new top level, or replace(). Bottom levels are made once per mesh and kept while an object uses them.
+  /// a new top level, or replace(). Bottom levels are made once per mesh and kept while an object uses them. Where
+  /// memory is short, throws std::bad_alloc, ResourceError, or what the monitor throws; nothing half built is kept.
   [[nodiscard]] TopLevel build(std::span<const Placed> objects);
   [[nodiscard]] TopLevel build(const RayScene& scene);
 
