@@ -38,7 +38,7 @@ TileTrees with_hits_of(const TileUpdate& update, TileTrees trees) {
       hits = trees.hits_of(sample);
     }
     next.hits.insert(next.hits.end(), hits.begin(), hits.end());
-    next.first_hit.push_back(static_cast<std::uint32_t>(next.hits.size()));
+    next.first_hit.push_back(hit_place(next.hits.size()));
   }
   next.paths = std::move(trees.paths);
   return next;
@@ -120,7 +120,7 @@ void StoredImage::find_hits(std::size_t tile, const GrowScene& scene, GrowCounte
     const StoredTree stored{PathCursor(image_.paths.words(trees.paths[sample]), layout()), nullptr};
     const std::uint32_t root = expand_tree(scene, primaries.ray(rect, sample), sample, stored, block, counters);
     pack(block, root, layout(), words, hits);
-    first_hit.push_back(static_cast<std::uint32_t>(hits.size()));
+    first_hit.push_back(hit_place(hits.size()));
   }
   hits.shrink_to_fit();
   trees.hits = std::move(hits);

@@ -307,10 +307,13 @@ void Compilation::update_light(const std::string& name, const Json& node, NodeRe
 }
 
 void Compilation::update_light_order() {
+  constexpr std::size_t kMostLights = std::size_t{1} << 20;  // colour programs name them with 20 bits
   if (old_lights_.empty()) return;
   scene_.light_order.clear();
   for (std::uint32_t i = 0; i < scene_.lights.size(); ++i)
     if (scene_.lights[i].alive) scene_.light_order.emplace_back(i);
+  if (scene_.light_order.size() > kMostLights)
+    fail("/lights", "a scene has at most " + std::to_string(kMostLights) + " lights");
   std::sort(scene_.light_order.begin(), scene_.light_order.end(),
             [&](LightId a, LightId b) { return scene_.light(a).node < scene_.light(b).node; });
 }

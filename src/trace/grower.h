@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <new>
 #include <span>
 #include <vector>
 
@@ -34,6 +35,7 @@ class Grower {
     node.hit = hit;
     complete(node, g_.scene.object(object));
     node.first_light = static_cast<std::uint32_t>(b_.lights.size());
+    if (b_.lights.size() + lights().size() > kNoNode) throw std::bad_alloc();  // more than first_light can tell
     b_.lights.resize(b_.lights.size() + lights().size());
   }
 

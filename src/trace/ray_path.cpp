@@ -1,6 +1,7 @@
 #include "trace/ray_path.h"
 
 #include <algorithm>
+#include <new>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -14,6 +15,7 @@ PathId PathTable::intern(std::span<const std::uint32_t> path) {
   const auto [first, last] = ids_.equal_range(hash);
   for (auto it = first; it != last; ++it)
     if (std::ranges::equal(words(it->second), path)) return it->second;
+  if (size() >= PathId::none().index()) throw std::bad_alloc();  // more than ids can tell
   const PathId id(static_cast<std::uint32_t>(size()));
   words_.insert(words_.end(), path.begin(), path.end());
   offsets_.push_back(words_.size());

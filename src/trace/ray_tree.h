@@ -2,6 +2,7 @@
 // the path, the object and the parent. Stored per tile, sample by sample.
 #pragma once
 #include <cstdint>
+#include <new>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct Hit {
 
 /// Side of the square image tiles, in pixels: the unit of work, of storage and of EXR tiles.
 inline constexpr std::uint32_t kTileSize = 64;
+
+/// A place among the hits of a tile as it is kept. Throws std::bad_alloc where they are more than it can tell.
+[[nodiscard]] inline std::uint32_t hit_place(std::size_t hits) {
+  if (hits > 0xFFFFFFFFU) throw std::bad_alloc();
+  return static_cast<std::uint32_t>(hits);
+}
 
 /// The ray trees of one tile. Samples are numbered pixel by pixel (row by row inside the tile, the tile clipped to the
 /// image), all samples of a pixel together. Hits of a sample: nodes in preorder, each followed by the filters of its

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "base/error.h"
-
 namespace relook {
 
 class ShadowCounter {
@@ -34,11 +32,11 @@ class ShadowCounter {
   [[nodiscard]] ShadowCounter added(std::uint32_t k) const {
     return overflows() ? *this : of(std::uint64_t{word_} + k, bits_);
   }
-  /// After k fewer; no value: the segment must be counted again. Requires: there were k.
+  /// After k fewer; no value: the segment must be counted again, also where fewer than k were counted (a cache that
+  /// does not tell the truth).
   [[nodiscard]] std::optional<ShadowCounter> removed(std::uint32_t k) const {
     if (k == 0) return *this;
-    if (overflows()) return std::nullopt;
-    require(k <= word_, "no more blockers are removed than were counted");
+    if (overflows() || k > word_) return std::nullopt;
     return of(word_ - k, bits_);
   }
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <optional>
 
-#include "base/error.h"
 #include "trace/grower.h"
 
 namespace relook {
@@ -73,17 +72,17 @@ class Updater {
       ++counters_.ray_updates;
       const Meeting nearest = Tracer::intersect(*grower_.grow().level, {ray.origin, ray.direction});
       if (nearest.object == node.object() && nearest.hit == block.nodes[index].hit) return false;
-      return regrow(index, node, nearest);
+      if (!nearest.object.is_none()) return regrow(index, node, nearest);
     }
     return regrow(index, node, meeting);
   }
 
+  /// Requires: something is met.
   bool regrow(std::uint32_t index, const PathNode& node, const Meeting& meeting) {
     changed_ = true;
     TreeBlock& block = grower_.block();
     if (!node.is_miss()) block.lights.resize(block.nodes[index].first_light);
     skip_children(stored_, node);
-    require(!meeting.object.is_none(), "a tested ray meets at least the selection");
     grower_.trace_from(index, meeting, counters_);
     grower_.trace_lights(index, counters_);
     return true;
