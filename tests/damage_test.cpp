@@ -95,6 +95,21 @@ class Damage : public testing::Test {
   std::size_t cases_ = 0;
 };
 
+TEST_F(Damage, a_look_document_of_another_form_with_correct_hashes_is_refused) {
+  write(20, 10, {1, 6, 0});
+  for (const Json& look : {Json::object(), Json{{"materials", 5}}, Json{{"lights", Json::array({1})}}}) {
+    CacheContent content;
+    ASSERT_EQ(read_cache(cache_, content).fault, CacheFault::none);
+    Json crafted = content.document.look;
+    if (look.empty()) crafted = look;
+    crafted.update(look);
+    content.document.look = crafted;
+    CacheLosses all;
+    all.faults.emplace_back();
+    EXPECT_EQ(make_good(content, all).fault, CacheFault::damaged) << look.dump();
+  }
+}
+
 TEST_F(Damage, every_flipped_byte_is_mended_or_refused) {
   for (const ViewOptions view : {ViewOptions{1, 4, 0}, ViewOptions{2, 4, 2}}) {
     write(24, 16, view);

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <thread>
+
 #include "base/error.h"
 
 namespace relook {
@@ -63,6 +67,56 @@ TEST_F(Residence, keeps_within_the_limit_and_gives_back_what_was_spilled) {
   EXPECT_GE(counts.reloaded[0], 5U);
   EXPECT_GE(counts.evicted[0], 5U);
   EXPECT_EQ(residency.take_counts().evicted[0], 0U);
+}
+
+TEST_F(Residence, a_piece_on_disk_is_read_once_for_all_who_ask_at_the_same_time) {
+  Residency& residency = start(3 * kPieceBytes, true);
+  std::atomic<int> reads = 0, reading = 0;
+  PieceHandler slow;
+  slow.pack = [this](std::size_t tile) { return pieces_[tile]; };
+  slow.drop = [this](std::size_t tile) { pieces_[tile] = {}; };
+  slow.unpack = [&](std::size_t tile, BytesView bytes) {
+    ++reads;
+    EXPECT_EQ(++reading, 1);
+    pieces_[tile].assign(bytes.begin(), bytes.begin() + 1);  // half there
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    pieces_[tile].assign(bytes.begin(), bytes.end());
+    --reading;
+  };
+  residency.add_kind(PieceKind::ray_trees, kTiles, std::move(slow));
+  for (std::size_t tile = 0; tile < kTiles; ++tile) set(tile);
+  ASSERT_FALSE(is_resident(0));
+  std::vector<std::thread> users;
+  for (int i = 0; i < 4; ++i)
+    users.emplace_back([&] {
+      const auto lease = residency.use(PieceKind::ray_trees, 0);
+      EXPECT_EQ(pieces_[0], Bytes(kPieceBytes, std::byte{1}));
+    });
+  for (std::thread& user : users) user.join();
+  EXPECT_EQ(reads, 1);
+}
+
+TEST_F(Residence, a_piece_that_could_not_be_unpacked_is_on_disk_as_before) {
+  Residency& residency = start(3 * kPieceBytes, true);
+  bool is_short = true;
+  PieceHandler handler;
+  handler.pack = [this](std::size_t tile) { return pieces_[tile]; };
+  handler.drop = [this](std::size_t tile) { pieces_[tile] = {}; };
+  handler.unpack = [&](std::size_t tile, BytesView bytes) {
+    pieces_[tile].assign(bytes.begin(), bytes.begin() + 1);
+    if (is_short) throw std::bad_alloc();
+    pieces_[tile].assign(bytes.begin(), bytes.end());
+  };
+  residency.add_kind(PieceKind::ray_trees, kTiles, std::move(handler));
+  for (std::size_t tile = 0; tile < kTiles; ++tile) set(tile);
+  for (int i = 0; i < 3; ++i) EXPECT_THROW(use(0), std::bad_alloc);
+  EXPECT_FALSE(is_resident(0));
+  is_short = false;
+  use(0);
+  EXPECT_EQ(pieces_[0], Bytes(kPieceBytes, std::byte{1}));
+  for (std::size_t tile = 1; tile < kTiles; ++tile) use(tile);  // no lease was left behind: it can go again
+  EXPECT_FALSE(is_resident(0));
+  EXPECT_LE(residents().size(), 3U);
 }
 
 TEST_F(Residence, expecting_pieces_moves_and_counts_nothing) {

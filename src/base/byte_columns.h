@@ -1,4 +1,5 @@
-// Vectors of plain values, one after the other in one block of bytes: for copies that the same process reads back.
+// Vectors of plain values, one after the other in one block of bytes: for copies that the same process reads back, from
+// a disk perhaps, which may have lost something.
 #pragma once
 #include <cstring>
 #include <type_traits>
@@ -33,18 +34,23 @@ class ByteColumns {
 class ByteColumnsReader {
  public:
   explicit ByteColumnsReader(BytesView bytes) : rest_(bytes) {}
-  /// Requires: columns are read in the order, and with the types, in which they were appended.
+  /// Requires: columns are read in the order, and with the types, in which they were appended. Throws IoError if the
+  /// bytes are not those of such columns.
   template <class T>
   void next(std::vector<T>& column) {
     std::uint64_t count = 0;
     get(&count, sizeof count);
+    check(count <= rest_.size() / sizeof(T));
     column.resize(count);
     get(column.data(), count * sizeof(T));
   }
 
  private:
+  static void check(bool fits) {
+    if (!fits) throw IoError("", "what was evicted to disk is not read back as it was written");
+  }
   void get(void* data, std::size_t size) {
-    require(size <= rest_.size(), "a column is read back as it was written");
+    check(size <= rest_.size());
     if (size > 0) std::memcpy(data, rest_.data(), size);
     rest_ = rest_.subspan(size);
   }

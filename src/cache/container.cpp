@@ -1,5 +1,6 @@
 #include "cache/container.h"
 
+#include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -18,7 +19,6 @@ static_assert(std::endian::native == std::endian::little, "cache files are littl
 constexpr std::string_view kMagic = "RLKCACHE";
 constexpr std::size_t kHashDigits = 32, kNameBytes = 24;
 constexpr std::size_t kHeaderBytes = 16 + 2 * kHashDigits, kEntryBytes = kNameBytes + 2 * 4 + 4 * 8;
-constexpr std::uint32_t kMostSections = 4096;
 constexpr std::uint32_t kLargestStride = 64;
 constexpr int kCompressionLevel = 1;
 enum Codec : std::uint32_t { kRaw = 0, kZstd = 1 };
@@ -34,6 +34,22 @@ T value_at(BytesView bytes, std::size_t offset) {
   T value;
   std::memcpy(&value, bytes.data() + offset, sizeof value);
   return value;
+}
+
+/// Can stored bytes unpack to so many? Their frame says how many they are, and none makes more than a block, 128 KiB,
+/// of 4 bytes: a table entry that says otherwise is not believed.
+bool can_unpack_to(BytesView stored, std::uint64_t raw_bytes) {
+  constexpr std::uint64_t kBlockBytes = 128 << 10, kSmallestBlock = 4;
+  return ZSTD_getFrameContentSize(stored.data(), stored.size()) == raw_bytes &&
+         raw_bytes / kBlockBytes <= stored.size() / kSmallestBlock;
+}
+
+/// What a section may unpack to where nothing else says how long it is: all that this machine has.
+void require_memory(const std::string& section, std::uint64_t raw_bytes) {
+  const auto pages = static_cast<std::uint64_t>(std::max(::sysconf(_SC_PHYS_PAGES), 1L));
+  if (raw_bytes <= pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) return;
+  throw ResourceError("", "section " + printable(section) + " of the cache takes " + std::to_string(raw_bytes >> 20) +
+                              " MiB, more than the memory of this machine");
 }
 
 /// Byte k of every value together: high bytes of floats and indices repeat, low ones do not.
@@ -140,7 +156,6 @@ ContainerReader::ContainerReader(BytesView file, const CacheIdentity& identity) 
 
 void ContainerReader::read_header(const CacheIdentity& identity) {
   const auto count = value_at<std::uint32_t>(file_, 12);
-  check_sound(count <= kMostSections, "the header names " + std::to_string(count) + " sections");
   const std::size_t table_end = kHeaderBytes + std::size_t{count} * kEntryBytes;
   if (file_.size() < table_end + sizeof(std::uint64_t))
     throw CacheDamage(CacheFault::truncated, "the section table is cut short");
@@ -171,6 +186,9 @@ void ContainerReader::read_table(std::uint32_t count) {
                 "the table entry of section " + printable(section.name) + " makes no sense");
     if (section.stored_bytes > file_.size() - section.offset)
       throw CacheDamage(CacheFault::truncated, "section " + printable(section.name) + " is cut short");
+    check_sound(
+        section.codec != kZstd || can_unpack_to(file_.subspan(section.offset, section.stored_bytes), section.raw_bytes),
+        "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
     expected_offset += section.stored_bytes;
     sections_.push_back(std::move(section));
   }
@@ -195,10 +213,12 @@ const ContainerReader::Section& ContainerReader::checked(std::string_view name, 
   const Section& section = find(name);
   check_sound(section.raw_bytes % value_bytes == 0 && section.raw_bytes / value_bytes == count,
               "section " + section.name + " does not hold " + std::to_string(count) + " values");
+  require_memory(section.name, section.raw_bytes);
   return section;
 }
 
 std::string ContainerReader::text(std::string_view name) const {
+  require_memory(std::string(name), raw_bytes(name));
   std::string text(raw_bytes(name), '\0');
   read(find(name), std::as_writable_bytes(std::span<char>(text.data(), text.size())));
   return text;

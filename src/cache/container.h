@@ -58,7 +58,8 @@ class ContainerWriter {
   std::vector<Section> sections_;
 };
 
-/// A .rlk file in memory, its header and table checked. Every function throws CacheDamage.
+/// A .rlk file in memory, its header and table checked. Every function throws CacheDamage; ResourceError where a
+/// section would fill more than this machine's memory.
 class ContainerReader {
  public:
   /// `file` must outlive the reader.

@@ -130,6 +130,8 @@ void decode_frame(BytesView file, const CacheIdentity& identity, CacheContent& c
 void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& content) {
   const ContainerReader reader(file, identity);
   std::vector<std::uint32_t> words = reader.column<std::uint32_t>("words", reader.count<std::uint32_t>("words"));
+  const std::uint64_t most = std::uint64_t{content.camera.width} * content.camera.height * content.samples + 1;
+  check_sound(reader.count<std::uint64_t>("offsets") <= most, "more paths than samples in section offsets");
   std::vector<std::uint64_t> offsets = reader.column<std::uint64_t>("offsets", reader.count<std::uint64_t>("offsets"));
   check_sound(!offsets.empty() && offsets.front() == 0 && offsets.back() == words.size() &&
                   std::is_sorted(offsets.begin(), offsets.end(), std::less_equal<>()),

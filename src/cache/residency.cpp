@@ -77,21 +77,42 @@ void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::
 
 Residency::Lease Residency::use(PieceKind kind, std::size_t tile) {
   if (!is_watched()) return {};
+  {
+    const std::lock_guard lock(mutex_);
+    touch(kind, tile);
+    ++piece(kind, tile).pins;
+  }
+  Lease lease(this, kind, tile);  // ends, too, if the piece does not come
+  bring_back(kind, tile);
+  return lease;
+}
+
+void Residency::bring_back(PieceKind kind, std::size_t tile) {
   std::unique_lock lock(mutex_);
   Piece& p = piece(kind, tile);
-  ++p.pins;
-  touch(kind, tile);
-  if (p.state == State::spilled) {
-    make_room_locked(p.facts.bytes);
-    resident_bytes_ += p.facts.bytes;
-    const SpillFile::Extent extent = *p.copy;
-    lock.unlock();
-    kinds_[index_of(kind)].handler.unpack(tile, spill_->read(extent));
+  loaded_.wait(lock, [&] { return p.state != State::loading; });
+  if (p.state != State::spilled) return;
+  make_room_locked(p.facts.bytes);
+  resident_bytes_ += p.facts.bytes;
+  p.state = State::loading;
+  const SpillFile::Extent extent = *p.copy;
+  lock.unlock();
+  const auto settle = [&](State state) {
     lock.lock();
-    p.state = State::resident;
-    ++counts_.reloaded[index_of(kind)];
+    p.state = state;
+    loaded_.notify_all();
+  };
+  const PieceHandler& handler = kinds_[index_of(kind)].handler;
+  try {
+    handler.unpack(tile, spill_->read(extent));
+  } catch (...) {
+    handler.drop(tile);  // what is there of it
+    settle(State::spilled);
+    resident_bytes_ -= p.facts.bytes;
+    throw;
   }
-  return {this, kind, tile};
+  settle(State::resident);
+  ++counts_.reloaded[index_of(kind)];
 }
 
 void Residency::expect(PieceKind kind, std::size_t tile) {

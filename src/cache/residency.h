@@ -4,6 +4,7 @@
 // allow.
 #pragma once
 #include <array>
+#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -92,7 +93,8 @@ class Residency {
   /// what has been measured; none: as before.
   void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::optional<double> rebuild_seconds,
            double surface_area = 1);
-  /// Makes the piece resident unless it is missing, and keeps it so.
+  /// Makes the piece resident unless it is missing, and keeps it so. One of several threads that ask for a piece on
+  /// disk reads it, the others wait. Throws IoError, and the piece is on disk as before.
   [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
   /// The piece will be used soon: if it is on disk, the system begins to fetch it. Nothing else changes.
   void expect(PieceKind kind, std::size_t tile);
@@ -125,7 +127,7 @@ class Residency {
   [[nodiscard]] std::string access_log() const { return std::string(kAccessLogHeader) + log_; }
 
  private:
-  enum class State : std::uint8_t { missing, spilled, resident };
+  enum class State : std::uint8_t { missing, spilled, loading, resident };
   struct Piece {
     State state = State::missing;
     PieceFacts facts;
@@ -149,6 +151,7 @@ class Residency {
     return kinds_[static_cast<std::size_t>(kind)].pieces[tile];
   }
   void release(PieceKind kind, std::size_t tile);
+  void bring_back(PieceKind kind, std::size_t tile);
   void touch(PieceKind kind, std::size_t tile);
   void log_use(std::string_view kind, std::size_t tile, const PieceFacts& facts, double seconds);
   [[nodiscard]] std::uint64_t known_bytes() const;
@@ -168,6 +171,7 @@ class Residency {
   std::function<std::uint64_t()> others_bytes_;
   std::function<void(std::vector<Victim>&)> list_others_;
   mutable std::mutex mutex_;
+  std::condition_variable loaded_;  // a piece is not `loading` any more
   std::uint64_t change_ = 0, resident_bytes_ = 0;
   std::uint64_t reserve_bytes_ = 0;  // the most that a change has held beside pieces and gave back
   std::uint64_t base_bytes_ = 0;     // beside pieces, as this change began
