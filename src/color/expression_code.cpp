@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/error.h"
-
 namespace relook {
 
 unsigned operand_count(Op op) {
@@ -65,23 +63,22 @@ namespace {
 /// Gives registers to values in order of first use and takes them back after the last. A lookup takes several in a row.
 class RegisterFile {
  public:
-  std::uint16_t take(unsigned count) {
+  std::uint32_t take(unsigned count) {
     if (count == 1 && !free_.empty()) {
-      const std::uint16_t last = free_.back();
+      const std::uint32_t last = free_.back();
       free_.pop_back();
       return last;
     }
-    const auto first = static_cast<std::uint16_t>(size_);
+    const std::uint32_t first = size_;
     size_ += count;
-    require(size_ <= 0xFFFF, "a colour program fits its registers");
     return first;
   }
-  void release(std::uint16_t reg) { free_.push_back(reg); }
-  [[nodiscard]] std::uint16_t size() const { return static_cast<std::uint16_t>(size_); }
+  void release(std::uint32_t reg) { free_.push_back(reg); }
+  [[nodiscard]] std::uint32_t size() const { return size_; }
 
  private:
-  unsigned size_ = 0;
-  std::vector<std::uint16_t> free_;
+  std::uint32_t size_ = 0;
+  std::vector<std::uint32_t> free_;
 };
 
 }  // namespace
@@ -137,7 +134,7 @@ Kernel make_kernel(const Code& whole_code, const std::vector<Value>& outputs) {
 
   Kernel kernel;
   RegisterFile registers;
-  std::vector<std::uint16_t> place(code.size(), 0);
+  std::vector<std::uint32_t> place(code.size(), 0);
   const auto step_of = [&](std::size_t i) {
     Kernel::Step step{code[i].op, code[i].payload, place[i], {}};
     for (unsigned k = 0; k < operand_count(code[i].op); ++k) step.in[k] = place[code[i].operands[k]];
@@ -160,15 +157,14 @@ Kernel make_kernel(const Code& whole_code, const std::vector<Value>& outputs) {
   for (std::size_t i = 0; i < code.size(); ++i) {
     if (last_use[i] != 0 && !is_uniform[i]) {
       if (code[i].op == Op::channel) {
-        place[i] = static_cast<std::uint16_t>(place[code[i].operands[0]] + code[i].payload);
+        place[i] = place[code[i].operands[0]] + code[i].payload;
       } else {
         place[i] = registers.take(result_count(code[i].op));
         kernel.varying.push_back(step_of(i));
       }
     }
     for (std::size_t ended = first_end[i + 1]; ended != kNone; ended = next_end[ended])
-      for (unsigned k = 0; k < result_count(code[ended].op); ++k)
-        registers.release(static_cast<std::uint16_t>(place[ended] + k));
+      for (unsigned k = 0; k < result_count(code[ended].op); ++k) registers.release(place[ended] + k);
   }
   kernel.registers = registers.size();
   for (Value value : outputs) kernel.outputs.push_back(place[value]);

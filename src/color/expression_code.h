@@ -52,6 +52,7 @@ enum class Input : std::uint8_t {
   child,         // detail: channel | branch << 4
   child_length,  // detail: branch
   tint,          // detail: channel | index in the light order << 4
+  reached,       // does that light reach the node, 1 or 0; detail: index in the light order << 4
 };
 /// Parts of the payload of an `input` instruction.
 [[nodiscard]] constexpr Input input_of(std::uint32_t payload) { return static_cast<Input>(payload & 0xFFU); }
@@ -85,13 +86,13 @@ struct Kernel {
   struct Step {
     Op op;
     std::uint32_t payload;
-    std::uint16_t out;
-    std::array<std::uint16_t, 5> in;
+    std::uint32_t out;
+    std::array<std::uint32_t, 5> in;
   };
   std::vector<Step> uniform;  // run once per batch: constants, parameters and what follows from them alone
   std::vector<Step> varying;  // run over all lanes
-  std::uint16_t registers = 0;
-  std::vector<std::uint16_t> outputs;  // registers of the values asked for
+  std::uint32_t registers = 0;
+  std::vector<std::uint32_t> outputs;  // registers of the values asked for
 };
 
 /// Drops what `outputs` do not need, splits uniform from varying code, assigns registers.

@@ -55,6 +55,11 @@ void gather(std::uint32_t payload, const Gathering& from, const BlockColors& col
       return from_nodes(from, out, [&](const RayNode& node) {
         return tint(from.block.lights[node.first_light + which], axis, colors);
       });
+    case Input::reached:
+      return from_nodes(from, out, [&](const RayNode& node) {
+        const ShadowState state = from.block.lights[node.first_light + which].state;
+        return state == ShadowState::open || state == ShadowState::filtered ? 1.0F : 0.0F;
+      });
   }
 }
 

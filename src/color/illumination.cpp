@@ -21,7 +21,7 @@ Triple blinn_phong_color(SurfaceTerms& terms) {
     const Scalar nl = max(dot(normal, lamp.direction), 0.0F);
     const Scalar nh = max(dot(normal, normalized(lamp.direction + terms.view())), 1e-7F);
     const Scalar lobe = exp2(log2(min(nh, 1.0F)) * shininess);
-    sum = sum + (diffuse + specular * lobe) * nl * lamp.irradiance;
+    sum = terms.with(light, sum, (diffuse + specular * lobe) * nl * lamp.irradiance);
   }
   if (terms.counts(kEmissionSource)) sum = sum + terms.emission();
   if (terms.has_child(Branch::reflection)) sum = sum + terms.child(Branch::reflection) * terms.field(Field::reflection);
@@ -98,6 +98,13 @@ NodeKey restricted(NodeKey key, const ColorPart& part) {
   key.children &= part.branches;
   if (!part.all_lamps) std::erase_if(key.lights, [&](const VisibleLight& light) { return light.light != part.lamp; });
   return key;
+}
+
+std::vector<VisibleLight> asked_lights(std::span<const LightId> order) {
+  std::vector<VisibleLight> lights;
+  lights.reserve(order.size());
+  for (std::uint32_t place = 0; place < order.size(); ++place) lights.push_back({order[place], place, true, true});
+  return lights;
 }
 
 ColorProgram build_program(const Scene& scene, const MaterialStructure& structure, const NodeKey& key) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <compare>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "color/program.h"
@@ -19,11 +20,12 @@ enum class Aspect : std::uint8_t { color, albedo, normal };
 /// Where light comes from, beside lamps: a bit each. The colour of an unlit surface is emission.
 enum Source : std::uint8_t { kAmbientSource = 1, kEnvironmentSource = 2, kEmissionSource = 4, kAllSources = 7 };
 
-/// A light that reaches a node: its place in the light order, and whether transparent surfaces stand in between.
+/// A light that reaches a node: its place in the light order, and whether transparent surfaces stand in between; or
+/// one of which each node says for itself whether it does, and through what.
 struct VisibleLight {
   LightId light;
   std::uint32_t order = 0;
-  bool filtered = false;
+  bool filtered = false, asked = false;
   auto operator<=>(const VisibleLight&) const = default;
 };
 
@@ -50,6 +52,12 @@ struct ColorPart {
   LightId lamp{};  // unless all: the only one, or none
 };
 [[nodiscard]] NodeKey restricted(NodeKey key, const ColorPart& part);
+
+/// With more lights than this in a scene, hardly two nodes see the same ones: programs then take all lights, asked, so
+/// that there are as few programs as ever. The bits are those of programs for the lights that reach a node.
+inline constexpr std::size_t kMostTellingLights = 32;
+/// The lights of a scene's order as such a program takes them.
+[[nodiscard]] std::vector<VisibleLight> asked_lights(std::span<const LightId> order);
 
 /// The program of nodes whose keys differ in the material alone, if these materials have this structure.
 [[nodiscard]] ColorProgram build_program(const Scene& scene, const MaterialStructure& structure, const NodeKey& key);

@@ -27,16 +27,16 @@ struct Scratch {
 
   void reserve(std::size_t registers) {
     if (columns.size() >= registers) return;
+    at.resize(registers);  // first: where memory is short, no column is without a place
     columns.resize(registers);
-    at.resize(registers);
   }
   /// The columns of `count` registers in a row, to be written.
-  [[nodiscard]] Column* own(std::uint16_t first, std::uint16_t count) {
-    for (std::uint16_t k = 0; k < count; ++k) at[first + k] = columns[first + k].lanes.data();
+  [[nodiscard]] Column* own(std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t k = 0; k < count; ++k) at[first + k] = columns[first + k].lanes.data();
     return &columns[first];
   }
   /// The column of a register, to be written.
-  [[nodiscard]] float* own(std::uint16_t reg) {
+  [[nodiscard]] float* own(std::uint32_t reg) {
     float* column = columns[reg].lanes.data();
     at[reg] = column;
     return column;

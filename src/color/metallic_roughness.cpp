@@ -203,19 +203,24 @@ Triple metallic_roughness_color(SurfaceTerms& terms) {
   BaseLayer base(terms);
   Triple sum = base.view_terms();
   if (terms.key().interface_only) return sum;
+  const std::vector<VisibleLight>& lights = terms.key().lights;
   std::vector<Incidence> lamps;
-  for (const VisibleLight& light : terms.key().lights) lamps.push_back(terms.incidence(light));
-  for (const Incidence& lamp : lamps) sum = sum + base.reflected(lamp.direction) * lamp.irradiance;
+  for (const VisibleLight& light : lights) lamps.push_back(terms.incidence(light));
+  const auto add_lamps = [&](auto& layer) {
+    for (std::size_t i = 0; i < lamps.size(); ++i)
+      sum = terms.with(lights[i], sum, layer.reflected(lamps[i].direction) * lamps[i].irradiance);
+  };
+  add_lamps(base);
   if (terms.builder().shape(Field::sheen_color).sheen) {
     SheenLayer sheen(terms, base);
     sum = sum * sheen.passed();
-    for (const Incidence& lamp : lamps) sum = sum + sheen.reflected(lamp.direction) * lamp.irradiance;
+    add_lamps(sheen);
   }
   if (terms.counts(kEmissionSource)) sum = sum + terms.emission();
   if (terms.builder().shape(Field::clearcoat).clearcoat) {
     CoatLayer coat(terms);
     sum = sum * coat.passed();
-    for (const Incidence& lamp : lamps) sum = sum + coat.reflected(lamp.direction) * lamp.irradiance;
+    add_lamps(coat);
     if (terms.has_child(Branch::coat)) sum = sum + coat.mirror();
   }
   return sum;

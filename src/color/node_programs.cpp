@@ -1,5 +1,6 @@
 #include "color/node_programs.h"
 
+#include <algorithm>
 #include <mutex>
 
 namespace relook {
@@ -35,6 +36,28 @@ NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& nod
   for (std::uint32_t light = 0; light < order.size(); ++light)
     note_light(key, order[light], light, block.lights[node.first_light + light].state);
   return key;
+}
+
+std::uint32_t NodePrograms::number(const TreeBlock& block, const RayNode& node) {
+  const std::vector<LightId>& order = scene_.scene().light_order;
+  if (order.size() <= kMostTellingLights)
+    return number(signature_of(block, node, order.size()),
+                  [&] { return restricted(key_of(scene_, block, node), part_); });
+  if (part_.all_lamps)
+    return number(signature_of(block, node, 0), [&] {
+      NodeKey key = key_of(scene_, block, node);
+      if (key.kind == NodeKind::surface) key.lights = asked_lights(order);
+      return restricted(std::move(key), part_);
+    });
+  Signature signature = signature_of(block, node, 0);
+  if (!node.object.is_none() && lamp_place_ < order.size())
+    signature.lights = light_bits(block.lights[node.first_light + lamp_place_].state);
+  return number(signature, [&] { return restricted(key_of(scene_, block, node), part_); });
+}
+
+std::size_t NodePrograms::place_of_lamp() const {
+  const std::vector<LightId>& order = scene_.scene().light_order;
+  return static_cast<std::size_t>(std::ranges::find(order, part_.lamp) - order.begin());
 }
 
 BoundProgram ProgramTable::get(const Scene& scene, const NodeKey& key) {
@@ -85,6 +108,7 @@ void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std
         keys.back().inside = true;
       }
     }
+    if (lights.size() > kMostTellingLights) key.lights = asked_lights(lights);
     keys.push_back(std::move(key));
   }
 }

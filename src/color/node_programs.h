@@ -31,13 +31,9 @@ struct SignatureHash {
 class NodePrograms {
  public:
   NodePrograms(const RayScene& scene, ProgramTable& table, const ColorPart& part = {})
-      : scene_(scene), table_(table), part_(part) {}
+      : scene_(scene), table_(table), part_(part), lamp_place_(place_of_lamp()) {}
 
-  std::uint32_t number(const TreeBlock& block, const RayNode& node) {
-    const auto key = [&] { return restricted(key_of(scene_, block, node), part_); };
-    if (scene_.scene().light_order.size() > kMostSignatureLights) return number_of(key());
-    return number(signature_of(block, node), key);
-  }
+  std::uint32_t number(const TreeBlock& block, const RayNode& node);
   std::uint32_t number(const TreeBlock&, const FilterNode& filter) {
     Signature signature{surface_bits(filter.object, filter.point.inside, 0) | kFilterBit, 0};
     return number(signature, [&] {
@@ -50,7 +46,7 @@ class NodePrograms {
   [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
  private:
-  static constexpr std::size_t kMostSignatureLights = 32;  // two bits each
+  static_assert(kMostTellingLights <= 32, "a signature has two bits a light");
   static constexpr std::uint64_t kFilterBit = std::uint64_t{1} << 63;
 
   [[nodiscard]] std::uint64_t surface_bits(ObjectId id, bool inside, std::uint64_t children) const {
@@ -58,26 +54,21 @@ class NodePrograms {
     return std::uint64_t{scene_.scene().object(id).material.index()} << 16 | children << 8 | (inside ? 1U : 0U) |
            (object.mesh->colors.empty() ? 0U : 2U) | (object.optics.volume && inside ? 4U : 0U) | 8U;
   }
-  [[nodiscard]] Signature signature_of(const TreeBlock& block, const RayNode& node) const {
+  [[nodiscard]] static std::uint64_t light_bits(ShadowState state) {  // only how a light reaches the node counts
+    return state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
+  }
+  /// `lights`: how many count, from the first.
+  [[nodiscard]] Signature signature_of(const TreeBlock& block, const RayNode& node, std::size_t lights) const {
     if (node.object.is_none()) return {};
     std::uint64_t children = 0;
     for (std::size_t b = 0; b < kBranches; ++b) children |= std::uint64_t{node.child[b] != kNoNode} << b;
     Signature signature{surface_bits(node.object, node.point.inside, children), 0};
-    const std::size_t lights = scene_.scene().light_order.size();
     const LightLink* links = block.lights.data() + node.first_light;
-    for (std::size_t light = 0; light < lights; ++light) {
-      const ShadowState state = links[light].state;
-      const std::uint64_t bits = state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
-      signature.lights |= bits << (2 * light);  // only how a light reaches the node counts
-    }
+    for (std::size_t light = 0; light < lights; ++light)
+      signature.lights |= light_bits(links[light].state) << (2 * light);
     return signature;
   }
-  /// The slow way, for scenes with more lights than a signature holds.
-  std::uint32_t number_of(const NodeKey& key) {
-    const auto [it, is_new] = key_numbers_.try_emplace(key, static_cast<std::uint32_t>(programs_.size()));
-    if (is_new) programs_.push_back(table_.get(scene_.scene(), key));
-    return it->second;
-  }
+  [[nodiscard]] std::size_t place_of_lamp() const;
   template <class MakeKey>
   std::uint32_t number(const Signature& signature, const MakeKey& make_key) {
     if (has_last_ && signature == last_) return last_number_;
@@ -92,8 +83,8 @@ class NodePrograms {
   const RayScene& scene_;
   ProgramTable& table_;
   ColorPart part_;
+  std::size_t lamp_place_;  // of the part's only lamp in the light order
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
-  std::map<NodeKey, std::uint32_t> key_numbers_;
   std::vector<BoundProgram> programs_;
   bool has_last_ = false;
   Signature last_;

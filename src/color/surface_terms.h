@@ -40,6 +40,11 @@ class SurfaceTerms {
 
   [[nodiscard]] bool counts(Source source) const { return (key_.sources & source) != 0; }
   [[nodiscard]] Incidence incidence(const VisibleLight& light);
+  /// A sum and what a light adds to it, where it reaches the node.
+  [[nodiscard]] Triple with(const VisibleLight& light, const Triple& sum, const Triple& added) {
+    if (!light.asked) return sum + added;
+    return if_positive(input(Input::reached, light.order << 4), sum + added, sum);
+  }
   [[nodiscard]] bool has_child(Branch branch) const {
     return (key_.children >> static_cast<unsigned>(branch) & 1U) != 0;
   }

@@ -8,9 +8,6 @@
 namespace relook {
 namespace {
 
-/// Trees are traced in chunks of whole pixels with about this many samples.
-constexpr std::uint32_t kChunkSamples = 2048;
-
 Uv first_uv(const Mesh& mesh, const Hit& hit) {
   if (mesh.uv[0].empty()) return Uv(0, 0);
   const auto& triangle = mesh.triangles[hit.primitive];
@@ -39,7 +36,8 @@ LayerTile::LayerTile(const LayerScene& scene, ProgramTable& programs)
       columns_(scene.layers.channels.size()) {}
 
 const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame, const TileMask* changed) {
-  const std::uint32_t samples = s_.view.samples, chunk = std::max(1U, kChunkSamples / samples);
+  const std::uint32_t samples = s_.view.samples,
+                      chunk = std::max(1U, chunk_samples(s_.grow.layout().lights) / samples);  // whole pixels
   for (std::vector<float>& column : columns_) column.assign(rect.pixels(), 0.0F);
   for (std::uint32_t first = 0; first < rect.pixels(); first += chunk) {
     const std::uint32_t last = std::min(first + chunk, rect.pixels());

@@ -17,9 +17,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Trees are shaded in chunks of about this many samples, so that a chunk's nodes stay in the processor's cache.
-constexpr std::uint32_t kChunkSamples = 2048;
-
 /// The ray trees of one tile in their stored form, with paths numbered within the tile.
 struct TileRecord {
   PathTable paths;
@@ -33,11 +30,11 @@ class TileRenderer {
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
   void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
-    const std::uint32_t samples = sample_count(rect, view_);
+    const std::uint32_t samples = sample_count(rect, view_), chunk = chunk_samples(grow_.layout().lights);
     colors.resize(samples);
     if (record != nullptr) record->trees.first_hit.push_back(0);
-    for (std::uint32_t first = 0; first < samples; first += kChunkSamples) {
-      const std::uint32_t last = std::min(first + kChunkSamples, samples);
+    for (std::uint32_t first = 0; first < samples; first += chunk) {
+      const std::uint32_t last = std::min(first + chunk, samples);
       block_.clear();
       roots_.clear();
       rays_.clear();
@@ -54,7 +51,7 @@ class TileRenderer {
       words_.clear();
       pack(block_, root, grow_.layout(), words_, record.trees.hits);
       record.trees.paths.push_back(record.paths.intern(words_));
-      record.trees.first_hit.push_back(static_cast<std::uint32_t>(record.trees.hits.size()));
+      record.trees.first_hit.push_back(hit_place(record.trees.hits.size()));
     }
   }
 

@@ -240,16 +240,21 @@ struct Replayer::Impl {
     for (std::size_t i = 0; i < tiles.size(); ++i) result.changed_pixels.add(tiles[i], changed[i]);
   }
 
+  /// With more lights, what a sample would keep of them takes more room than its tree.
+  [[nodiscard]] bool may_compress() const {
+    return compressed.most_samples() > 0 && state.scene().light_order.size() <= kMostTellingLights;
+  }
+
   /// The parameters whose colour trees an edit of colours is to use; null: none.
   [[nodiscard]] const ParameterSet* set_to_keep(const ColorChange& colors) const {
-    if (compressed.most_samples() == 0 || !is_compressible(colors)) return nullptr;
+    if (!may_compress() || !is_compressible(colors)) return nullptr;
     return compressed.set_for(colors.parameters);
   }
 
   void choose_parameters(const std::vector<ParameterSet>& sets) {
     compressed.choose(sets);
     for (const ParameterSet& set : sets) {
-      if (compressed.most_samples() == 0) return;
+      if (!may_compress()) return;
       StepChange change = no_change(stored.lights());
       change.colors.parameters = set;
       recolorer.compress(change);

@@ -14,6 +14,12 @@ namespace relook {
 [[nodiscard]] inline std::uint32_t sample_count(const TileRect& rect, const ViewOptions& view) {
   return rect.pixels() * view.samples;
 }
+/// Trees are shaded in chunks of about so many samples, so that a chunk's nodes stay in the processor's cache: fewer
+/// where a node has many lights.
+[[nodiscard]] inline std::uint32_t chunk_samples(std::size_t lights) {
+  constexpr std::size_t kMostSamples = 2048, kMostLinks = std::size_t{1} << 20;
+  return static_cast<std::uint32_t>(std::clamp<std::size_t>(kMostLinks / (lights + 1), 1, kMostSamples));
+}
 /// Calls visit(sample, leaf) for the samples of some leaves of a tile, in increasing order.
 template <class Visit>
 void for_each_sample(const TileRect& rect, const ViewOptions& view, const Leaves& leaves, const Visit& visit) {

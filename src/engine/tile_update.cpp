@@ -10,8 +10,6 @@
 namespace relook {
 namespace {
 
-constexpr std::size_t kChunkSamples = 2048;
-
 class TileUpdater {
  public:
   TileUpdater(const UpdatePass& pass, std::size_t tile, TileTools& tools)
@@ -68,7 +66,7 @@ class TileUpdater {
     }
     roots_.push_back(root);
     result_.shaded.push_back(sample);
-    if (roots_.size() == kChunkSamples) flush();
+    if (roots_.size() == chunk_samples(p_.grow.layout().lights)) flush();
   }
 
   /// Hits that are not kept are found first where the tree may be compared with the scene. After a change of the
@@ -114,7 +112,7 @@ class TileUpdater {
     result_.packed.push_back(sample);
     pack(block_, root, p_.grow.layout(), words_, result_.hits);
     result_.packed_paths.push_back(result_.paths.intern(words_));
-    result_.first_hit.push_back(static_cast<std::uint32_t>(result_.hits.size()));
+    result_.first_hit.push_back(hit_place(result_.hits.size()));
   }
 
   const UpdatePass& p_;
