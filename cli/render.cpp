@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "edit/apply.h"
+#include "engine/frame_layers.h"
 #include "engine/layered_frame.h"
 #include "engine/report.h"
 #include "load_scene.h"
@@ -72,6 +73,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   };
   if (journal) span.emplace(console.trace(), "apply journal");
   if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before);
+  if (arguments.layers) require_layers(loaded.state->scene());
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   span.emplace(console.trace(), "render");
   RenderStats stats;

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "edit/apply.h"
 #include "engine/chosen_parameters.h"
+#include "engine/frame_layers.h"
 #include "journal_run.h"
 #include "load_cache.h"
 #include "load_scene.h"
@@ -98,6 +99,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
   console.warn(damage);
   if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != opened.scene_hash)
     require_sound({CacheFault::other_scene, "", ""}, cache);
+  if (arguments.layers) require_layers(opened.state->scene());
   const std::uint32_t shadow_bits = opened.image.view.shadow_bits;
   if (arguments.shadow_bits.value_or(shadow_bits) != shadow_bits)
     throw Error(ExitCode::cache_mismatch, cache, "",

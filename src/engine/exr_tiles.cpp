@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <new>
 
 #include "base/error.h"
 #include "base/vector_clones.h"
@@ -31,11 +32,22 @@ void split_bytes(const unsigned char* raw, std::size_t size, unsigned char* spli
 
 static_assert(std::endian::native == std::endian::little, "OpenEXR files are little-endian");
 
+struct MemoryFile {
+  Bytes bytes;
+  bool is_short_of_memory = false;
+};
+
+/// Called by C, through which nothing may be thrown.
 std::int64_t write_to_memory(exr_const_context_t, void* userdata, const void* buffer, std::uint64_t size,
                              std::uint64_t offset, exr_stream_error_func_ptr_t) {
-  auto& file = *static_cast<Bytes*>(userdata);
-  if (file.size() < offset + size) file.resize(offset + size);
-  std::memcpy(file.data() + offset, buffer, size);
+  auto& file = *static_cast<MemoryFile*>(userdata);
+  try {
+    if (file.bytes.size() < offset + size) file.bytes.resize(offset + size);
+  } catch (const std::exception&) {
+    file.is_short_of_memory = true;
+    return -1;
+  }
+  std::memcpy(file.bytes.data() + offset, buffer, size);
   return static_cast<std::int64_t>(size);
 }
 
@@ -43,12 +55,53 @@ void ignore_message(exr_const_context_t, exr_result_t, const char*) {}
 
 void check(exr_result_t result) {
   if (result == EXR_ERR_OUT_OF_MEMORY) throw std::bad_alloc();
-  require(result == EXR_ERR_SUCCESS, "OpenEXR accepts the header and chunks of a frame");
+  if (result != EXR_ERR_SUCCESS)
+    throw IoError("", std::string("OpenEXR cannot hold the frame: ") + exr_get_default_error_message(result));
 }
 
-void write_header(exr_context_t file, std::uint32_t width, std::uint32_t height, std::span<const ExrChannel> channels,
+/// Of channels and attributes, the zero at their ends not counted, unless the file says that it has long ones: only
+/// files that do have them say so.
+constexpr std::size_t kLongestShortName = 31;
+bool has_long_names(std::span<const ExrChannel> channels, const ExrAttributes& attributes) {
+  const auto is_long = [](const std::string& name) { return name.size() > kLongestShortName; };
+  return std::ranges::any_of(channels, is_long, &ExrChannel::name) ||
+         std::ranges::any_of(attributes, is_long,
+                             [](const auto& attribute) -> const std::string& { return attribute.first; });
+}
+
+class Writer {
+ public:
+  explicit Writer(MemoryFile& memory) : memory_(memory) {
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.user_data = &memory;
+    setup.write_fn = write_to_memory;
+    setup.error_handler_fn = ignore_message;
+    relook::check(exr_start_write(&file_, "frame", EXR_WRITE_FILE_DIRECTLY, &setup));
+  }
+  ~Writer() {
+    if (file_ != nullptr) exr_finish(&file_);
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  [[nodiscard]] exr_context_t context() const { return file_; }
+  void check(exr_result_t result) const {
+    if (memory_.is_short_of_memory) throw std::bad_alloc();
+    relook::check(result);
+  }
+  void finish() { check(exr_finish(&file_)); }
+
+ private:
+  MemoryFile& memory_;
+  exr_context_t file_ = nullptr;
+};
+
+void write_header(const Writer& writer, std::uint32_t width, std::uint32_t height, std::span<const ExrChannel> channels,
                   const ExrAttributes& attributes) {
+  const exr_context_t file = writer.context();
+  const auto check = [&](exr_result_t result) { writer.check(result); };
   int part = 0;
+  if (has_long_names(channels, attributes)) check(exr_set_longname_support(file, 1));
   check(exr_add_part(file, nullptr, EXR_STORAGE_TILED, &part));
   check(exr_initialize_required_attr_simple(file, part, static_cast<std::int32_t>(width),
                                             static_cast<std::int32_t>(height), EXR_COMPRESSION_ZIP));
@@ -83,24 +136,20 @@ Bytes TileCompressor::zip(std::span<const unsigned char> raw) {
 
 Bytes tiled_exr(std::uint32_t width, std::uint32_t height, std::span<const ExrChannel> channels,
                 const ExrAttributes& attributes, std::span<const Bytes> tiles) {
-  Bytes bytes;
-  constexpr std::size_t kHeaderBytes = 2048, kChunkHeaderBytes = 32;  // more than there are
+  MemoryFile memory;
+  constexpr std::size_t kHeaderBytes = 2048, kChunkHeaderBytes = 32;  // more than most have
   std::size_t size = kHeaderBytes;
   for (const Bytes& tile : tiles) size += tile.size() + kChunkHeaderBytes;
-  bytes.reserve(size);
-  exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  setup.user_data = &bytes;
-  setup.write_fn = write_to_memory;
-  setup.error_handler_fn = ignore_message;
-  exr_context_t file = nullptr;
-  check(exr_start_write(&file, "frame", EXR_WRITE_FILE_DIRECTLY, &setup));
-  write_header(file, width, height, channels, attributes);
+  memory.bytes.reserve(size);
+  Writer writer(memory);
+  write_header(writer, width, height, channels, attributes);
   const std::uint32_t tiles_across = (width + kTileSize - 1) / kTileSize;
   for (std::uint32_t tile = 0; tile < tiles.size(); ++tile)
-    check(exr_write_tile_chunk(file, 0, static_cast<int>(tile % tiles_across), static_cast<int>(tile / tiles_across), 0,
-                               0, tiles[tile].data(), tiles[tile].size()));
-  check(exr_finish(&file));
-  return bytes;
+    writer.check(exr_write_tile_chunk(writer.context(), 0, static_cast<int>(tile % tiles_across),
+                                      static_cast<int>(tile / tiles_across), 0, 0, tiles[tile].data(),
+                                      tiles[tile].size()));
+  writer.finish();
+  return std::move(memory.bytes);
 }
 
 }  // namespace relook

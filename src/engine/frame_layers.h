@@ -32,7 +32,11 @@ struct LayerSum {
   std::size_t first_column = 0;
 };
 
+/// Throws UsageError if the scene has more lamps than a frame can have layers of.
+void require_layers(const Scene& scene);
+
 struct FrameLayers {
+  /// Throws as require_layers().
   FrameLayers(const Scene& scene, std::uint32_t samples, PixelFormat format);
 
   std::vector<ExrChannel> channels;  // by column
