@@ -65,8 +65,9 @@ std::unique_ptr<PixelHistory> open_pixel(const RunSource& source, std::uint32_t 
                      " pixels");
   auto history = std::make_unique<PixelHistory>(std::move(*opened.state), opened.image.view, x, y);
   const Rgba color = history->color();
-  require(std::memcmp(&color, &frame.pixels[std::size_t{y} * frame.width + x], sizeof color) == 0,
-          "a pixel is traced as it stands in the cache");
+  if (std::memcmp(&color, &frame.pixels[std::size_t{y} * frame.width + x], sizeof color) != 0)
+    throw Error(ExitCode::damaged_cache, source.cache, "pixel " + std::to_string(x) + "," + std::to_string(y),
+                "the cache's frame is not that of its scene; preprocess again");
   return history;
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 
+#include "cache/cache.h"
 #include "engine/pixel_history.h"
 #include "engine/render.h"
 #include "engine/replay.h"
@@ -151,6 +152,19 @@ TEST_F(BlameProgram, names_steps_and_objects_of_a_pixel) {
   EXPECT_EQ(found["changes"][0]["class"], "color");
   EXPECT_TRUE(found["changes"][0]["causes"][0].get<std::string>().starts_with("material Paint: "));
   EXPECT_NE(found["paths"].dump().find("CentralSphere [Paint]"), std::string::npos);
+}
+
+TEST_F(BlameProgram, a_cache_whose_frame_is_not_its_scenes_is_damage_and_no_abort) {
+  CacheContent content;
+  ASSERT_EQ(read_cache(at("cache"), content).fault, CacheFault::none);
+  content.frame[5 * kWidth + 7].g += 0.25F;
+  write_cache(at("other"), content);
+  ASSERT_EQ(relook({"replay", at("other"), at("j.json"), "-o", at("run2"), "--quiet"}).exit_code, 0);
+  EXPECT_EQ(relook({"blame", at("run2"), "6,5"}).exit_code, 0);
+  const ProgramResult result = relook({"blame", at("run2"), "7,5"});
+  EXPECT_EQ(result.exit_code, 5) << result.output;
+  EXPECT_NE(result.output.find("pixel 7,5: the cache's frame is not that of its scene"), std::string::npos)
+      << result.output;
 }
 
 TEST_F(BlameProgram, refuses_what_is_no_pixel_and_no_run) {
