@@ -70,10 +70,8 @@ std::vector<Input> inputs_of(const Arguments& arguments) {
   };
   const bool has_one = arguments.verb == Verb::blame ||
                        (arguments.verb == Verb::journal && arguments.journal_source != JournalSource::diff);
-  for (const std::string& input : arguments.inputs) {
-    add(input, "an input");
-    if (has_one) break;
-  }
+  const std::size_t count = has_one ? 1 : arguments.verb == Verb::plan ? 2 : arguments.inputs.size();
+  for (std::size_t i = 0; i < std::min(count, arguments.inputs.size()); ++i) add(arguments.inputs[i], "an input");
   add(arguments.journal, "the journal");
   add(arguments.view.look_patch, "the patch of --look");
   add(arguments.scene, "the scene");

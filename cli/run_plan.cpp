@@ -309,6 +309,8 @@ void RunPlan::clear_way(const std::function<bool()>& locks_all) const {
   // Frames of another journal, in steps that nobody else is at: this command's, and those that the journal lacks.
   for (const auto& [key, note] : ledger_->notes()) {
     const bool is_ours = key.first > journal_.steps.size() || (key.first >= first_ && key.first <= last_);
+    const bool has_no_files = key.second == kWholeStep && !is_frame(key);  // they are those of its last frame
+    if (has_no_files) continue;
     const bool is_same = is_of_journal(key, note);
     if (!is_ours || (is_same && (key.second == kWholeStep || !may_be_renamed(key)))) continue;
     const Json entry = ledger_->entry(note);

@@ -105,7 +105,7 @@ TEST_F(Damage, a_look_document_of_another_form_with_correct_hashes_is_refused) {
     crafted.update(look);
     content.document.look = crafted;
     CacheLosses all;
-    all.tiles = {0};
+    all.faults.emplace_back();
     EXPECT_EQ(make_good(content, all).fault, CacheFault::damaged) << look.dump();
   }
 }

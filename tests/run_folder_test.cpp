@@ -141,9 +141,9 @@ TEST_F(RunFolderTest, foreign_files_beside_a_run_stay) {
   write_text("run/frames/comp.nk", "script");
   ASSERT_EQ(replay("run").exit_code, 0);
   EXPECT_TRUE(fs::exists(at("run/notes.txt")) && fs::exists(at("run/frames/comp.nk")));
-  expect_refused("run", {"notes.txt", "not relook's"}, [&] { return replay("run", {"--float", "--overwrite"}); });
-  fs::remove(at("run/notes.txt"));
   expect_refused("run", {"comp.nk", "not relook's"}, [&] { return replay("run", {"--float", "--overwrite"}); });
+  fs::remove(at("run/frames/comp.nk"));
+  expect_refused("run", {"notes.txt", "not relook's"}, [&] { return replay("run", {"--float", "--overwrite"}); });
 }
 
 TEST_F(RunFolderTest, a_foreign_file_where_a_frame_is_to_go_is_refused) {
@@ -349,8 +349,9 @@ TEST_F(RunFolderTest, a_hundredth_value_renames_the_frames_of_its_wedge) {
 }
 
 TEST_F(RunFolderTest, a_run_below_a_cache_is_refused) {
-  for (const std::string name : {"c/run", "c", "c/trees/run", "c/../c/run"})
-    expect_refused("c", {"cache"}, [&] { return replay(name); });
+  for (const std::string name : {"c/run", "c/trees/run", "c/../c/run"})
+    expect_refused("c", {"lies in the cache"}, [&] { return replay(name); });
+  expect_refused("c", {"an input is never replaced"}, [&] { return replay("c"); });
   fs::create_directory_symlink(at("c"), at("link"));
   expect_refused("c", {"cache"}, [&] { return replay("link/run"); });
 }
