@@ -139,7 +139,7 @@ std::size_t segments_outside(const Replayer& replayer, const ImageRegions& regio
     const TileTrees& trees = image.trees[tile];
     for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
       GrowCounters counters;
-      TreeBlock block;
+TreeBlock block;
       const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), layout_of(replayer)),
                               trees.hits_of(sample).data()};
       expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
