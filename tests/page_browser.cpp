@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <iostream>
+#include <vector>
 
 #include "base/files.h"
 #include "engine/frame_file.h"
@@ -30,21 +33,28 @@ Json page_expectations(const std::filesystem::path& run, bool has_overlays) {
     expected["labels"].push_back(label_of(step));
     expected["names"].push_back(step["name"]);
   }
-  const auto most =
-      std::ranges::max_element(steps, {}, [](const Json& step) { return step["pixels_changed"].get<std::uint64_t>(); });
-  expected["changed"] = most - steps.begin();
+  std::vector<std::size_t> by_change;
+  for (std::size_t i = 1; i < steps.size(); ++i) by_change.push_back(i);
+  std::ranges::stable_sort(by_change, std::ranges::greater(),
+                           [&](std::size_t i) { return steps[i]["pixels_changed"].get<std::uint64_t>(); });
+  expected["by_change"] = by_change;
   for (const std::size_t entry : {std::size_t{1}, steps.size() - 1}) {
-    const Frame frame = decode_exr(run / steps[entry]["frame"].get<std::string>());
+    const std::string name = steps[entry]["frame"].get<std::string>();
+    const Frame frame = decode_exr(run / name);
     const std::uint32_t x = frame.width / 2 + 9, y = frame.height / 2 - 7;
     const Rgba& pixel = frame.pixels[std::size_t{y} * frame.width + x];
     expected["pixels"].push_back(
-        {{"entry", entry}, {"x", x}, {"y", y}, {"rgba", {pixel.r, pixel.g, pixel.b, pixel.a}}});
+        {{"entry", entry}, {"x", x}, {"y", y}, {"rgba", {pixel.r, pixel.g, pixel.b, pixel.a}}, {"frame", name}});
   }
   expected["overlays"] = Json::array();
-  const std::string stem = std::filesystem::path((*most)["preview"].get<std::string>()).stem().string();
-  for (const char* kind : {"dependent", "touched", "groups", "tunnels"})
-    if (has_overlays && std::filesystem::exists(run / "overlays" / (stem + "_" + kind + ".png")))
-      expected["overlays"].push_back(kind);
+  for (const Json& step : steps) {
+    const std::string stem = std::filesystem::path(step["preview"].get<std::string>()).stem().string();
+    Json kinds = Json::array();
+    for (const char* kind : {"dependent", "touched", "groups", "tunnels"})
+      if (has_overlays && std::filesystem::exists(run / "overlays" / (stem + "_" + kind + ".png")))
+        kinds.push_back(kind);
+    expected["overlays"].push_back(std::move(kinds));
+  }
   return expected;
 }
 

@@ -88,7 +88,7 @@ void PagePixels::take(std::size_t entry, const std::string& stem, bool is_last, 
 bool PagePixels::fits_beside(std::size_t bytes, bool is_last) const {
   const std::uint64_t share =
       is_last ? frames_bytes_ / 2 : frames_bytes_ / 8 + std::min(read_bytes_, frames_bytes_) / 8 * 3;
-  const std::uint64_t most = std::max(share, kLeastBesideBytes) / 8 * 7;
+  const std::uint64_t most = (share + kFreeBesideBytes) / 8 * 7;
   const std::uint64_t last = is_last ? 0 : run_.packed_bytes() / 3 * 4 + run_.current().count() * 8 + 1000;
   return bytes_ + bytes + last <= most;
 }

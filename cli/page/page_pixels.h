@@ -1,6 +1,6 @@
 // Which frames of a run its page has the pixels of, and where: in the page while there is room, else in pixels/*.js
-// beside it, several frames to a file. Beside the page they take no more than half of the bytes of the frames, spread
-// over the run; what does not fit is left out whole, so that each frame that is there is right bit by bit.
+// beside it, several frames to a file. Beside the page they take no more than half of the bytes of the frames and 6 MB,
+// spread over the run; what does not fit is left out whole, so that each frame that is there is right bit by bit.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -17,8 +17,8 @@
 
 namespace relook {
 
-/// What lies beside a page, pixels and details together, may take as much as this when half of the frames is less.
-inline constexpr std::uint64_t kLeastBesideBytes = 6'000'000;
+/// What lies beside a page, pixels and details together, may take half of the bytes of the frames and these.
+inline constexpr std::uint64_t kFreeBesideBytes = 6'000'000;
 
 /// Files of records, several in each.
 class PixelBundles {

@@ -145,7 +145,7 @@ class RunReport {
     this.showOverlays();
     this.viewer.refresh();
     this.showReadout();
-    document.documentElement.dataset.painted = this.labels[entry];
+    Object.assign(document.documentElement.dataset, { hasDifference: this.hasDifference(), painted: this.labels[entry] });
   }
 
   /** Makes one side the frame of an entry: its pixels, or its preview when the page does not have them. */

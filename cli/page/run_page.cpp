@@ -67,7 +67,7 @@ class RunPage {
       : input_(input),
         files_(input.folder),
         pixels_(input.folder, files_),
-        details_(files_, std::max(pixels_.frames_bytes() / 2, kLeastBesideBytes) / 8),
+        details_(files_, (pixels_.frames_bytes() / 2 + kFreeBesideBytes) / 8),
         head_(shown_head(input.head)),
         head_bytes_(script_json(head_).size()) {}
 

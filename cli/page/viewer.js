@@ -40,8 +40,9 @@ class Viewer {
     else this.changed();
   }
 
-  /** New contents of before, after, difference or overlays. */
+  /** New contents of before, after, difference or overlays. Sized anew, the canvas forgets files that it showed. */
   refresh() {
+    this.resize();
     if (this.isFitted) this.fit();
     else this.changed();
   }
