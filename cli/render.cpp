@@ -72,11 +72,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
     if (arguments.layers) before = render(loaded.state->scene(), arguments.view.sampling, ignored);
   };
   if (journal) span.emplace(console.trace(), "apply journal");
-<<<<<<< HEAD
   if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before, console);
-=======
-  if (journal) apply_journal(*loaded.state, *journal, arguments.step, meta, render_before);
->>>>>>> limits/main
   if (arguments.layers) require_layers(loaded.state->scene());
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   span.emplace(console.trace(), "render");

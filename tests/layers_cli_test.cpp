@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <map>
 
 #include "layer_file.h"
 #include "run_program.h"
@@ -48,19 +49,21 @@ TEST_F(LayersCli, a_replay_writes_the_files_of_full_renders) {
   std::ofstream(at("j.json")) << kJournal;
   relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--samples", "2", "--quiet"});
   relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--aovs", "--quiet", "--verify"});
+  std::map<std::string, std::string> last_frames;  // by step
+  for (const Json& entry : parse_json(text_of(read_file(at("run/report.json"))), "report.json")["steps"])
+    last_frames[entry["step"].dump()] = entry["frame"];
   for (const std::string step : {"0", "1", "2", "3", "4", "5"}) {
     relook({"render", kScene, "-o", at(step + ".exr"), "--resolution", "72x40", "--samples", "2", "--aovs", "--quiet",
             "--journal", at("j.json"), "--step", step});
     // Frame 0 of a replay belongs to its journal, as step 0 of a render with a journal does.
-    EXPECT_EQ(frame_bytes(at(step + ".exr")), frame_bytes(at("run/frames/000" + step + ".exr"))) << step;
+    EXPECT_EQ(frame_bytes(at(step + ".exr")), frame_bytes(at("run/" + last_frames[step]))) << step;
   }
   const LayerFile dragged = read_layers(at("run/frames/0002_01.exr"));
   for (std::size_t i = 0; i < dragged.channel("G").size(); ++i)  // of where the ball is now: half rounds to 2^-11
     EXPECT_LE(std::fabs(dragged.channel("lights_rest.G")[i]), dragged.channel("G")[i] / 1024) << i;
   const LayerFile green = read_layers(at("run/frames/0001.exr"));
   EXPECT_GT(std::ranges::count(green.channel("changed.A"), 1.0F), 20);
-  const LayerFile released = read_layers(at("run/frames/0002_02.exr"));
-  EXPECT_EQ(std::ranges::count(released.channel("changed.A"), 1.0F), 0);
+  EXPECT_GT(std::ranges::count(dragged.channel("changed.A"), 1.0F), 0);
   EXPECT_NE(read_layers(at("run/frames/0003.exr")).attributes.at("cryptomatte/3ae39a5/manifest").find("Another"),
             std::string::npos);
 }

@@ -44,10 +44,7 @@ void EmbreeDevice::check() {
     thrown = std::exchange(thrown_, nullptr);
   }
   if (thrown) std::rethrow_exception(thrown);
-<<<<<<< HEAD
   if (error == RTC_ERROR_CANCELLED) stop_if_interrupted();
-=======
->>>>>>> limits/main
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (error != RTC_ERROR_NONE)
     throw ResourceError("", "Embree cannot build an acceleration structure (its error " +
@@ -63,11 +60,8 @@ Handle EmbreeDevice::checked(Handle handle) {
 
 SceneHandle EmbreeDevice::new_scene() {
   SceneHandle scene = checked(SceneHandle(rtcNewScene(device_)));
-<<<<<<< HEAD
   rtcSetSceneProgressMonitorFunction(
       scene.get(), [](void*, double) { return !is_interrupted(); }, nullptr);
-=======
->>>>>>> limits/main
 #if RTC_VERSION_MAJOR >= 4
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS);
 #else
