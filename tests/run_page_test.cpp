@@ -51,13 +51,21 @@ void write_text(const std::filesystem::path& path, std::string_view text) {
 TEST(RunPage, a_page_of_8000_steps_is_small_and_opens_within_two_seconds) {
   const ScratchFolder folder("page_8000");
   SyntheticRun run(folder / "run", 256, 16, one_tile_changes);
-  for (std::size_t i = 0; i <= 8000; ++i) run.add(i);
+  for (std::size_t i = 0; i <= 8000; ++i) {
+    run.add(i)["reasons"] = {"a reason " + std::string(300, 'r')};
+    PatchOperation operation;
+    operation.path = "/materials/Paint/pbrMetallicRoughness/metallicFactor";
+    operation.value = static_cast<double>(i + 1) / 10000;
+    run.journal.steps.emplace_back().edit = {operation};
+  }
   run.write_report();
   run.write_page();
   EXPECT_LT(page_bytes(folder), 3'000'000U);
   EXPECT_LE(folder_bytes(folder / "run/pixels"), folder_bytes(folder / "run/frames") / 2);
+  EXPECT_TRUE(std::filesystem::exists(folder / "run/pixels/steps_00031_1.js")) << "details are beside the page, too";
   Json expected = page_expectations(folder / "run", false);
-  expected.update({{"seconds", 2}, {"rows", 8001}, {"mixes", false}});
+  expected.update(
+      {{"seconds", 2}, {"rows", 8001}, {"mixes", false}, {"words", "material Paint: metallic becomes 0.8"}});
   expected["pixels"] = Json::array();
   for (const std::size_t entry : {8000, 0, 1, 255, 256, 4099, 7999})
     expected["pixels"].push_back(run.expected_pixel(entry, 97 + entry % 64, 5));

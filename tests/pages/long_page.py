@@ -2,6 +2,7 @@
 
 usage: long_page.py RUN EXPECTED SCREENSHOTS
 EXPECTED: as of report_page.py, and "seconds": within which the page shows itself; "rows": of the entries, those in the page;
+"words": what stands beside the last step;
 "mixes": true when the page has the pixels of some frames of "pixels" and previews of the others, false: it has all of
 them. Exit code 0; 1 with a line for each fault; 77 when there is no Chromium.
 """
@@ -40,6 +41,7 @@ class LongPage(ReportPage):
         self.window.key("Enter")
         self.wait_for(rows - 1)
         self.check(self.text("#step-name") == last, f"the last step is headed {self.text('#step-name')}")
+        self.check(self.expected.get("words", "") in self.text("#side"), f"beside the last step stands {self.text('#side')}")
         self.window.key("Escape")
 
     def all_cards(self):
