@@ -111,11 +111,23 @@ std::filesystem::path run_of(const std::filesystem::path& file) {
   return {};
 }
 
+/// Whether a file has another name, by a hard link, in a folder or below it.
+bool is_linked_in(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0 || status.st_nlink < 2) return false;
+  std::error_code error;
+  for (auto entry = std::filesystem::recursive_directory_iterator(folder, error);
+       !error && entry != std::filesystem::recursive_directory_iterator(); entry.increment(error))
+    if (std::error_code none; entry->is_regular_file(none) && are_one(entry->path(), file)) return true;
+  return false;
+}
+
 /// Whether an output is a file in a folder of inputs, and no earlier output there.
 bool is_read_from(const Output& output, const std::filesystem::path& folder) {
   std::error_code error;
-  return output.kind && std::filesystem::is_directory(folder, error) && std::filesystem::exists(output.path, error) &&
-         lies_in(output.path, folder) && !is_own_file(output.path, *output.kind);
+  if (!output.kind || !std::filesystem::is_directory(folder, error)) return false;
+  return std::filesystem::exists(output.path, error) && !is_own_file(output.path, *output.kind) &&
+         (lies_in(output.path, folder) || is_linked_in(output.path, folder));
 }
 
 [[noreturn]] void refuse(const Output& output, const std::string& why) {

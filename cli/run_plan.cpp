@@ -110,7 +110,7 @@ RunPlan::RunPlan(const Arguments& arguments, const Journal& journal, std::filesy
 
 void RunPlan::refresh() {
   ledger_.reset();
-  replaces_all_ = false;
+  replaces_all_ = replaces_some_ = false;
   look_into_folder();
   find_kept();
 }
@@ -141,6 +141,7 @@ void RunPlan::judge_run() {
   std::optional<std::string> other = difference_of_sources(ledger_->source(), source_);
   replaces_all_ = other.has_value();
   if (!other) other = other_journal();
+  replaces_some_ = other.has_value();
   if (!other) return;
   if (!arguments_.overwrite) throw UsageError(folder_.string(), "holds " + *other + "; --overwrite replaces it");
   if (replaces_all_) require_known_files();
@@ -243,7 +244,7 @@ void RunPlan::find_kept() {
   const bool wants_page = arguments_.report == ReportKind::html && !is_there(folder_ / "report.html");
   const bool lacks_baseline = arguments_.baseline && ledger_ && ledger_->head().is_object() &&
                               ledger_->head().value("full_render_seconds", Json()).is_null();
-  is_complete_ = kept_frames_ == frames_ && !wants_page && !lacks_baseline &&
+  is_complete_ = kept_frames_ == frames_ && !replaces_some_ && !wants_page && !lacks_baseline &&
                  (arguments_.report == ReportKind::none ||
                   (has_all_in_report && ledger_->head().is_object() && !ledger_->head().value("interrupted", true)));
 }

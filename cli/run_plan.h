@@ -74,7 +74,8 @@ class RunPlan {
   EditHashes hashes_;
   std::uint32_t first_ = 0, last_ = 0;
   std::optional<RunLedger> ledger_;  // of a run that can be gone on with, or in which things are replaced
-  bool replaces_all_ = false;        // --overwrite of a run of another source
+  bool replaces_some_ = false;       // --overwrite of anything there
+  bool replaces_all_ = false;        // of a run of another source
   std::size_t frames_ = 0, kept_frames_ = 0;
   std::vector<std::vector<bool>> kept_;  // [step - first][frame]
   std::uint64_t pixels_different_ = 0;

@@ -51,12 +51,12 @@ TEST_F(LayersCli, a_replay_writes_the_files_of_full_renders) {
   relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--aovs", "--quiet", "--verify"});
   std::map<std::string, std::string> last_frames;  // by step
   for (const Json& entry : parse_json(text_of(read_file(at("run/report.json"))), "report.json")["steps"])
-    last_frames[entry["step"].dump()] = entry["frame"];
+    last_frames[std::to_string(entry["step"].get<int>())] = entry["frame"].get<std::string>();
   for (const std::string step : {"0", "1", "2", "3", "4", "5"}) {
     relook({"render", kScene, "-o", at(step + ".exr"), "--resolution", "72x40", "--samples", "2", "--aovs", "--quiet",
             "--journal", at("j.json"), "--step", step});
     // Frame 0 of a replay belongs to its journal, as step 0 of a render with a journal does.
-    EXPECT_EQ(frame_bytes(at(step + ".exr")), frame_bytes(at("run/" + last_frames[step]))) << step;
+    EXPECT_EQ(frame_bytes(at(step + ".exr")), frame_bytes(at("run/" + last_frames.at(step)))) << step;
   }
   const LayerFile dragged = read_layers(at("run/frames/0002_01.exr"));
   for (std::size_t i = 0; i < dragged.channel("G").size(); ++i)  // of where the ball is now: half rounds to 2^-11
