@@ -76,7 +76,6 @@ void RunFolder::write_frame(StepReport& step, const Image& image, const FrameCha
                             const Scene* layers) {
   const auto start = std::chrono::steady_clock::now();
   finish_writing();
-  std::vector<StepReport> ready = std::exchange(notes_, {});
   const Frame& frame = image.frame;
   const bool takes_all = !std::exchange(has_written_, true) || !change.follows_last;
   const auto take = [&](auto& encoder) {
@@ -94,9 +93,11 @@ void RunFolder::write_frame(StepReport& step, const Image& image, const FrameCha
   meta.change_class = change_class_name(step.change);
   step.frame = frame_name(step.place);
   step.preview = preview_name(step.place);
-  ++own_frames_;
   std::optional<Bytes> layered;
   if (layers != nullptr) layered = encode_layered_exr({*layers, image.view, frame, change.pixels, style_.format}, meta);
+  // Not before: what has thrown until here is no reason to forget finished frames.
+  std::vector<StepReport> ready = std::exchange(notes_, {});
+  ++own_frames_;
   writing_ = std::async(std::launch::async,
                         [this, step, meta = std::move(meta), ready = std::move(ready), layered = std::move(layered)] {
                           const Uninterrupted until_written;  // a finished frame stays

@@ -50,7 +50,8 @@ TEST_F(LayersCli, a_replay_writes_the_files_of_full_renders) {
   relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--samples", "2", "--quiet"});
   relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--aovs", "--quiet", "--verify"});
   std::map<std::string, std::string> last_frames;  // by step
-  for (const Json& entry : parse_json(text_of(read_file(at("run/report.json"))), "report.json")["steps"])
+  const Json report = parse_json(text_of(read_file(at("run/report.json"))), "report.json");
+  for (const Json& entry : report["steps"])
     last_frames[std::to_string(entry["step"].get<int>())] = entry["frame"].get<std::string>();
   for (const std::string step : {"0", "1", "2", "3", "4", "5"}) {
     relook({"render", kScene, "-o", at(step + ".exr"), "--resolution", "72x40", "--samples", "2", "--aovs", "--quiet",

@@ -79,11 +79,12 @@ class Outputs : public testing::Test {
                                  (folder / ".." / folder.filename() / name).string(),
                                  fs::relative(full).string()};
     all.erase(all.begin() + 3);
-    const fs::path link = at("link_" + name.string());
+    const std::string unique = std::to_string(hash64(bytes_of(path))) + "_" + name.string();
+    const fs::path link = at("link_" + unique);
     if (!fs::exists(link)) fs::create_symlink(full, link);
     all.push_back(link.string());
     if (fs::is_regular_file(full)) {
-      const fs::path hard = at("hard_" + name.string());
+      const fs::path hard = at("hard_" + unique);
       if (!fs::exists(hard)) fs::create_hard_link(full, hard);
       all.push_back(hard.string());
     }
