@@ -50,11 +50,7 @@ std::optional<Json> finished_cache(const Arguments& arguments, Console& console)
   const std::string& output = arguments.output;
   const Occupant occupant = occupant_of(output);
   if (occupant.kind == Occupant::Kind::other) throw UsageError(output, occupant.what);
-  if (occupant.kind == Occupant::Kind::none) {
-    const auto outer = enclosing_cache(output);
-    if (outer) throw UsageError(output, "lies inside the cache " + printable(outer->string()));
-    return std::nullopt;
-  }
+  if (occupant.kind == Occupant::Kind::none) return std::nullopt;
   if (arguments.overwrite) {
     if (occupant.foreign.empty()) return std::nullopt;
     throw UsageError(output, "holds " + occupant.foreign + ", which relook did not write");

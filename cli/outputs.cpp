@@ -187,7 +187,7 @@ void check_outputs(const Arguments& arguments) {
     const std::optional<std::filesystem::path> cache = enclosing_cache(resolved(output.path));
     const bool is_cache_itself =
         cache && arguments.verb == Verb::preprocess && !output.kind && are_one(*cache, output.path);
-    if (cache && !is_cache_itself) refuse(output, "lies in the cache " + cache->string());
+    if (cache && !is_cache_itself) refuse(output, "lies inside the cache " + cache->string());
     if (output.kind) check_file(output, arguments.overwrite);
   }
   check_together(outputs, arguments.verb);

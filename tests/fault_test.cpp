@@ -159,7 +159,8 @@ TEST_F(Fault, kill_during_replay_leaves_whole_frames_only) {
     EXPECT_FALSE(std::filesystem::exists(at("run/report.json")));
   }
   write_journal(2);
-  EXPECT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
+  EXPECT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 1) << "has further steps";
+  EXPECT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet", "--overwrite"}).exit_code, 0);
   EXPECT_EQ(files_below(at("run/frames")).size(), 3U) << "frames of the killed run are gone";
 }
 

@@ -199,5 +199,27 @@ TEST_F(KillPoints, resume) {
   check_replays(calls_left, whole, prepare);
 }
 
+TEST_F(KillPoints, a_run_killed_fifty_times_ends_with_the_bytes_of_an_undisturbed_one) {
+  make_reference();
+  std::ofstream(at("j.json")) << journal_text(40);
+  ASSERT_EQ(run(replay("whole")).exit_code, 0);
+  const std::map<std::string, Bytes> whole = contents(at("whole"), {"report.json", "report.html"});
+  int killed = 0;
+  for (int i = 0; i < 50; ++i) {
+    const ProgramResult result = run(replay("run"), std::to_string(12 + i * 7 % 23) + ":kill");
+    ASSERT_TRUE(result.exit_code == 128 + SIGKILL || result.exit_code == 0) << result.exit_code << result.output;
+    killed += result.exit_code == 0 ? 0 : 1;
+    for (const auto& [name, bytes] : contents(at("run/frames"))) {
+      if (name.starts_with(".")) continue;
+      ASSERT_TRUE(whole.contains("frames/" + name)) << name;
+      EXPECT_TRUE(whole.at("frames/" + name) == bytes) << name;
+    }
+  }
+  EXPECT_GT(killed, 20);
+  const ProgramResult last = run(replay("run"));
+  EXPECT_EQ(last.exit_code, 0) << last.output;
+  EXPECT_TRUE(contents(at("run"), {"report.json", "report.html"}) == whole);
+}
+
 }  // namespace
 }  // namespace relook

@@ -52,6 +52,12 @@ std::map<std::string, std::string> hashes_below(const fs::path& folder) {
   return hashes;
 }
 
+/// From another working folder.
+ProgramResult run_program_in(const std::string& folder, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"sh", "-c", "cd \"$0\" && exec \"$@\"", folder, RELOOK_PROGRAM});
+  return run_program(arguments);
+}
+
 class RunFolderTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -348,9 +354,54 @@ TEST_F(RunFolderTest, a_hundredth_value_renames_the_frames_of_its_wedge) {
   expect_same_run("run", "whole");
 }
 
+TEST_F(RunFolderTest, memory_does_not_grow_with_steps) {
+  std::vector<Json> steps;
+  for (int i = 0; i < 1500; ++i) {
+    const double t = i * 37 % 100 * 0.01;
+    if (i % 2 == 0)
+      steps.push_back(color_step("step " + std::to_string(i), t));
+    else
+      steps.push_back({{"name", "move " + std::to_string(i)}, {"edit", move(0.3 * t)}});
+  }
+  write_journal("long.json", steps);
+  fs::remove_all(at("c"));
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "16x9", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(replay("run", {"--quiet"}, "long.json").exit_code, 0);
+  const Json entries = report("run")["steps"];
+  ASSERT_EQ(entries.size(), 1501U);
+  EXPECT_LE(entries.back()["peak_rss"].get<double>(), 1.05 * entries[100]["peak_rss"].get<double>());
+  EXPECT_LT(fs::file_size(at("run/report.html")), 5'000'000U);
+}
+
+TEST_F(RunFolderTest, a_run_is_found_again_wherever_it_is) {
+  fs::create_directory(at("work"));
+  for (const char* name : {"c", "j.json"}) fs::rename(at(name), at(std::string("work/") + name));
+  ASSERT_EQ(relook({"replay", at("work/c"), at("work/j.json"), "-o", at("work/run"), "--quiet"}).exit_code, 0);
+  const auto blame = [&](const std::string& run, std::vector<std::string> further = {}) {
+    further.insert(further.begin(), {"blame", at(run), "30,20", "--quiet"});
+    return run_program_in("/", further);
+  };
+  EXPECT_EQ(blame("work/run").exit_code, 0);
+  fs::rename(at("work"), at("moved"));
+  EXPECT_EQ(blame("moved/run").exit_code, 0) << "all of it together";
+  fs::rename(at("moved/run"), at("alone"));
+  const ProgramResult lost = blame("alone");
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_NE(lost.output.find("say --cache"), std::string::npos) << lost.output;
+  EXPECT_EQ(blame("alone", {"--cache", at("moved/c"), "--journal", at("moved/j.json")}).exit_code, 0);
+}
+
+TEST_F(RunFolderTest, paths_that_are_not_utf8_cost_no_report) {
+  const std::string run = "r\xFFun", cache = "c\xFE";
+  fs::rename(at("c"), at(cache));
+  ASSERT_EQ(relook({"replay", at(cache), at("j.json"), "-o", at(run), "--json", "--progress", "none"}).exit_code, 0);
+  EXPECT_EQ(report(run)["frames"].size(), 10U);
+  EXPECT_EQ(relook({"blame", at(run), "3,3", "--quiet"}).exit_code, 0);
+}
+
 TEST_F(RunFolderTest, a_run_below_a_cache_is_refused) {
   for (const std::string name : {"c/run", "c/trees/run", "c/../c/run"})
-    expect_refused("c", {"lies in the cache"}, [&] { return replay(name); });
+    expect_refused("c", {"lies inside the cache"}, [&] { return replay(name); });
   expect_refused("c", {"an input is never replaced"}, [&] { return replay("c"); });
   fs::create_directory_symlink(at("c"), at("link"));
   expect_refused("c", {"cache"}, [&] { return replay("link/run"); });

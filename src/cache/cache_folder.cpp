@@ -80,15 +80,16 @@ bool is_run(const fs::path& folder) {
   }
 }
 
-Occupant what_folder_holds(const fs::path& path) {
+/// `error`: no such file where another program has put another folder here in this moment.
+Occupant what_folder_holds(const fs::path& path, std::error_code& error) {
   Occupant occupant;
   std::string own;
-  std::error_code error;
+  error.clear();
   for_each_entry(path, error, [&](const Entry& entry) {
     if (entry.is_own && own.empty()) own = entry.name;
     if (!entry.is_own && !entry.is_system && occupant.foreign.empty()) occupant.foreign = printable(entry.name);
   });
-  if (error) throw IoError(path.string(), "cannot be looked into: " + error.message());
+  if (error) return occupant;
   if (own.empty() && occupant.foreign.empty()) return occupant;
   occupant.kind = !own.empty() && looks_like_cache(path) ? Occupant::Kind::cache : Occupant::Kind::other;
   if (occupant.kind == Occupant::Kind::cache) return occupant;
@@ -133,6 +134,17 @@ void move_entry(const fs::path& from, const fs::path& to) {
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 || errno == EEXIST) return;
   const bool is_free = fs::symlink_status(to, ignored).type() == fs::file_type::not_found;
   if (is_free) fs::rename(from, to, ignored);
+}
+
+Occupant what_folder_holds(const fs::path& path) {
+  constexpr int kMostTries = 100;
+  std::error_code error;
+  for (int tries = 0; tries < kMostTries; ++tries) {
+    const Occupant occupant = what_folder_holds(path, error);
+    if (!error) return occupant;
+    if (error != std::errc::no_such_file_or_directory) break;
+  }
+  throw IoError(path.string(), "cannot be looked into: " + error.message());
 }
 
 void remove_empty_folders(const fs::path& folder) {
