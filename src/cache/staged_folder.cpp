@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <random>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -31,7 +32,7 @@ std::filesystem::path resolved(const std::filesystem::path& path) {
   return final_path.has_filename() ? final_path : std::filesystem::path();
 }
 
-/// How the names of temporary folders begin; process and attempt follow.
+/// How the names of temporary folders begin; process and a number follow.
 std::string temporary_start(const std::filesystem::path& final_path) {
   return std::string(".").append(final_path.filename().string()) + ".relook-";
 }
@@ -68,8 +69,10 @@ StagedFolder::StagedFolder(const std::filesystem::path& final_path)
   make_folders(final_.parent_path());
   remove_abandoned(final_);
   const std::string stem = temporary_start(final_) + std::to_string(getpid()) + "-";
+  // No name is used twice: who removes what was replaced does so by its name, which must not be another's by then.
+  std::random_device number;
   for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
-    staged_ = final_.parent_path() / (stem + std::to_string(attempt));
+    staged_ = final_.parent_path() / (stem + std::to_string(number()));
     if (mkdir(staged_.c_str(), 0777) == 0) {
       lock_ = open_locked(staged_, false);
       if (lock_ >= 0) return;
