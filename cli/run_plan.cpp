@@ -328,12 +328,14 @@ void RunPlan::clear_way(const std::function<bool()>& locks_all) const {
 void RunPlan::remove_leftovers() const {
   for (const RunPart& part : kParts)
     for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) {
-      const std::optional<std::uint32_t> step = step_of_file(unfinished_name(file));
-      if (step && *step >= first_ && *step <= last_) remove_file(file);
-      // Written by a killed command, and not noted any more.
-      const std::optional<std::uint32_t> own_step = step_of_file(file.filename().string());
-      const bool is_of_none = own_step && *own_step > journal_.steps.size();
-      if (replaces_some_ && is_of_none && part.folder != "pixels" && is_own_file(file, part.kind)) remove_file(file);
+      if (part.folder == "pixels") continue;  // the page sees to its own
+      const std::string unfinished = unfinished_name(file);
+      const std::string name = unfinished.empty() ? file.filename().string() : unfinished;
+      const std::optional<std::uint32_t> step = step_of_file(name);
+      if (!step) continue;
+      const bool is_ours = *step >= first_ && *step <= last_;
+      const bool is_of_none = replaces_some_ && *step > journal_.steps.size();  // and noted nowhere
+      if (unfinished.empty() ? is_of_none && is_own_file(file, part.kind) : is_ours || is_of_none) remove_file(file);
     }
   for (const std::filesystem::path& file : entries_of(folder_))
     if (unfinished_name(file).starts_with("report.")) remove_file(file);
