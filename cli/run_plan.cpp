@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/file_names.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "cache/cache.h"
@@ -41,25 +42,14 @@ std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folde
   std::vector<std::filesystem::path> entries;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (!is_dropping(entry.path())) entries.push_back(entry.path());
+    if (!is_system_name(entry.path().filename().string())) entries.push_back(entry.path());
   if (error && is_there(folder)) throw IoError(folder.string(), "cannot be read: " + error.message());
   std::ranges::sort(entries);
   return entries;
 }
 
-/// The name that write_file() was writing when it was killed: of ".0003.exr.4711.0.tmp" "0003.exr"; "" of all others.
 std::string unfinished_name(const std::filesystem::path& path) {
-  std::string name = path.filename().string();
-  if (!name.starts_with(".") || !name.ends_with(".tmp")) return "";
-  name = name.substr(1, name.size() - 5);
-  for (int numbers = 0; numbers < 2; ++numbers) {
-    const std::size_t dot = name.rfind('.');
-    if (dot == std::string::npos || dot + 1 == name.size() ||
-        name.find_first_not_of("0123456789", dot + 1) != std::string::npos)
-      return "";
-    name.resize(dot);
-  }
-  return name;
+  return std::string(name_of_temporary(path.filename().string()));
 }
 
 /// The step that the file of a frame is of: 3 of "0003_01.exr".

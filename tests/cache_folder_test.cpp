@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file_names.h"
 #include "base/hash.h"
 #include "base/json.h"
 #include "cache/arithmetic.h"

@@ -29,26 +29,6 @@ ProgramResult relook(std::vector<std::string> arguments) {
   return run_program(arguments);
 }
 
-/// Starts the program without waiting; its output is dropped.
-pid_t start(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  std::vector<char*> words;
-  for (std::string& argument : arguments) words.push_back(argument.data());
-  words.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    execv(words[0], words.data());
-    _exit(127);
-  }
-  return child;
-}
-
-int wait_for(pid_t child) {
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
 std::string long_journal(int steps) {
   std::string text = R"({"relook": "journal/1", "steps": [)";
   for (int i = 0; i < steps; ++i)
@@ -90,7 +70,7 @@ class Fault : public testing::Test {
 TEST_F(Fault, sigterm_leaves_finished_frames_a_report_and_no_temporary_files) {
   make_cache("320x180");
   write_journal(2000);
-  const pid_t child = start({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"});
+  const pid_t child = start_relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"});
   for (int i = 0; i < 1000 && !std::filesystem::exists(at("run/frames/0003.exr")); ++i)
     std::this_thread::sleep_for(10ms);
   ASSERT_TRUE(std::filesystem::exists(at("run/frames/0003.exr")));
@@ -124,7 +104,7 @@ TEST_F(Fault, a_run_short_of_memory_is_taken_up_with_more) {
 
 TEST_F(Fault, sigterm_during_preprocess_leaves_nothing) {
   const pid_t child =
-      start({"preprocess", kScene, "-o", at("big"), "--resolution", "1920x1080", "--samples", "16", "--quiet"});
+      start_relook({"preprocess", kScene, "-o", at("big"), "--resolution", "1920x1080", "--samples", "16", "--quiet"});
   std::this_thread::sleep_for(300ms);
   kill(child, SIGTERM);
   EXPECT_EQ(wait_for(child), 128 + SIGTERM);
@@ -135,7 +115,7 @@ TEST_F(Fault, kill_during_preprocess_leaves_a_sound_cache_or_none) {
   make_cache("64x36");
   for (int i = 0; i < 12; ++i) {
     const pid_t child =
-        start({"preprocess", kScene, "-o", at("c"), "--resolution", "320x180", "--quiet", "--overwrite"});
+        start_relook({"preprocess", kScene, "-o", at("c"), "--resolution", "320x180", "--quiet", "--overwrite"});
     std::this_thread::sleep_for(std::chrono::milliseconds(30 + 40 * i));
     kill(child, SIGKILL);
     wait_for(child);
@@ -148,7 +128,7 @@ TEST_F(Fault, kill_during_replay_leaves_whole_frames_only) {
   make_cache("160x90");
   write_journal(2000);
   for (int i = 0; i < 4; ++i) {
-    const pid_t child = start({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"});
+    const pid_t child = start_relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"});
     std::this_thread::sleep_for(std::chrono::milliseconds(150 + 70 * i));
     kill(child, SIGKILL);
     wait_for(child);
@@ -168,8 +148,8 @@ TEST_F(Fault, two_replays_of_one_cache_agree_and_leave_it_untouched) {
   make_cache("160x90");
   write_journal(5);
   const std::vector<std::string> before = files_below(at("c"));
-  const pid_t first = start({"replay", at("c"), at("j.json"), "-o", at("one"), "--quiet"});
-  const pid_t second = start({"replay", at("c"), at("j.json"), "-o", at("two"), "--quiet"});
+  const pid_t first = start_relook({"replay", at("c"), at("j.json"), "-o", at("one"), "--quiet"});
+  const pid_t second = start_relook({"replay", at("c"), at("j.json"), "-o", at("two"), "--quiet"});
   EXPECT_EQ(wait_for(first), 0);
   EXPECT_EQ(wait_for(second), 0);
   EXPECT_EQ(relook({"compare", at("one"), at("two"), "--quiet"}).exit_code, 0);
@@ -184,7 +164,7 @@ TEST_F(Fault, two_preprocesses_to_one_output_leave_one_sound_cache) {
     other.back() = second_resolution;
     one.insert(one.end(), flags.begin(), flags.end());
     other.insert(other.end(), flags.begin(), flags.end());
-    const pid_t first = start(one), second = start(other);
+    const pid_t first = start_relook(one), second = start_relook(other);
     const std::multiset<int> codes{wait_for(first), wait_for(second)};
     EXPECT_EQ(relook({"check", at("c"), "--quiet"}).exit_code, 0);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(at("")), {}), 1) << "temporary folders remain";

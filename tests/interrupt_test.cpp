@@ -30,26 +30,14 @@ ProgramResult relook(std::vector<std::string> arguments) {
   return run_program(arguments);
 }
 
-pid_t start(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  std::vector<char*> words;
-  for (std::string& argument : arguments) words.push_back(argument.data());
-  words.push_back(nullptr);
-  const pid_t child = fork();
-  if (child == 0) {
-    execv(words[0], words.data());
-    _exit(127);
-  }
-  return child;
-}
-
 /// The exit code; fails when it takes long.
 int end_of(pid_t child) {
   const auto asked = std::chrono::steady_clock::now();
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_LT(std::chrono::steady_clock::now() - asked, kSoon);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+  EXPECT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
+  return WEXITSTATUS(status);
 }
 
 Json move(double x) {
@@ -104,7 +92,7 @@ TEST_F(Interruption, a_run_is_left_and_taken_up_by_any_signal_within_steps_drags
   for (const auto& [signal, after] : signals) {
     SCOPED_TRACE(strsignal(signal));
     fs::remove_all(at("run"));
-    const pid_t child = start(replay("run"));
+    const pid_t child = start_relook(replay("run"));
     wait_for("run/" + after);
     kill(child, signal);
     EXPECT_EQ(end_of(child), 128 + signal);
@@ -125,7 +113,7 @@ TEST_F(Interruption, a_run_is_left_and_taken_up_by_any_signal_within_steps_drags
 
 TEST_F(Interruption, further_signals_change_nothing) {
   ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
-  const pid_t child = start(replay("run"));
+  const pid_t child = start_relook(replay("run"));
   wait_for("run/frames/0002.exr");
   for (const int signal : {SIGUSR1, SIGTERM, SIGINT, SIGTERM, SIGUSR2, SIGHUP, SIGXCPU}) {
     kill(child, signal);
@@ -157,7 +145,7 @@ TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
   for (std::vector<std::string> command : commands) {
     SCOPED_TRACE(command[0]);
     command.push_back("--quiet");
-    const pid_t child = start(command);
+    const pid_t child = start_relook(command);
     std::this_thread::sleep_for(1200ms);
     kill(child, SIGTERM);
     const int code = end_of(child);

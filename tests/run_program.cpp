@@ -60,6 +60,25 @@ ProgramResult run_program(const std::vector<std::string>& command) {
   return result;
 }
 
+pid_t start_relook(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  const pid_t child = fork();
+  if (child == 0) {
+    execv(words[0], words.data());
+    _exit(127);
+  }
+  return child;
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
 std::vector<std::byte> frame_bytes(const std::filesystem::path& file) {
   constexpr std::size_t kLastChunk = 12;
   std::vector<std::byte> bytes = read_file(file);

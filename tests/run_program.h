@@ -1,5 +1,7 @@
 // Runs a program as a user would, and reads what a replay left behind.
 #pragma once
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,6 +30,11 @@ struct ProgramResult {
 
 /// Runs `command[0]` (searched for in PATH) without standard input and waits for it.
 [[nodiscard]] ProgramResult run_program(const std::vector<std::string>& command);
+
+/// Starts the program without waiting; its output is not caught.
+[[nodiscard]] pid_t start_relook(std::vector<std::string> arguments);
+/// Its exit code; 128 + signal when it was killed.
+int wait_for(pid_t child);
 
 /// The bytes of a file; of a preview (.png) the last chunk only: that it is whole.
 [[nodiscard]] std::vector<std::byte> frame_bytes(const std::filesystem::path& file);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/file_names.h"
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "cache/cache_names.h"

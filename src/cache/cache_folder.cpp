@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/file_names.h"
 #include "base/json.h"
 #include "cache/cache_names.h"
 #include "cache/container.h"

@@ -1,5 +1,4 @@
-// Names in a cache's folder: those of its own files, which alone are ever removed, and of files that systems leave in
-// any folder, which are neither a fault nor removed.
+// Names in a cache's folder: those of its own files, which alone are ever removed.
 #pragma once
 #include <string_view>
 
@@ -16,8 +15,5 @@ inline constexpr std::string_view kTreesFolder = "trees";
 
 /// Of the manifest, of a file that it may name, or of one of these while it is being written (base/files.h).
 [[nodiscard]] bool is_own_name(std::string_view name);
-
-/// Left by a desktop or a file system (.DS_Store, Thumbs.db, .nfs0123...); without a folder.
-[[nodiscard]] bool is_system_name(std::string_view name);
 
 }  // namespace relook

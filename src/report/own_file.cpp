@@ -98,10 +98,4 @@ bool is_own_file(const std::filesystem::path& path, OwnKind kind) {
   }
 }
 
-bool is_dropping(const std::filesystem::path& name) {
-  const std::string text = name.filename().string();
-  constexpr std::array<std::string_view, 5> kNames{".DS_Store", "Thumbs.db", "desktop.ini", ".directory", ".localized"};
-  return std::ranges::find(kNames, text) != kNames.end() || text.starts_with("._") || text.starts_with(".nfs");
-}
-
 }  // namespace relook

@@ -26,7 +26,4 @@ enum class OwnKind : std::uint8_t {
 /// Whether `path` is a regular file of this kind that relook has written. What cannot be read is none.
 [[nodiscard]] bool is_own_file(const std::filesystem::path& path, OwnKind kind);
 
-/// Whether a file belongs to the system or its file browser, not to a person: .DS_Store, Thumbs.db, .nfs0000...
-[[nodiscard]] bool is_dropping(const std::filesystem::path& name);
-
 }  // namespace relook

@@ -100,13 +100,10 @@ void ProgressFile::append_line(std::string_view text) {
   });
 }
 
-void ProgressFile::append(const Json& entry) {
-  append_line(json_text(entry));
-}
+void ProgressFile::append(const Json& entry) { append_line(json_text(entry)); }
 
 void ProgressFile::begin(const Json& source) {
-  append_line(std::string("{\"relook\":\"") + std::string(kFormat) +
-              "\",\"source\":" + json_text(source) + "}");
+  append_line(std::string("{\"relook\":\"") + std::string(kFormat) + "\",\"source\":" + json_text(source) + "}");
 }
 
 bool ProgressFile::lock_all_steps() {

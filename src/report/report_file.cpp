@@ -27,8 +27,7 @@ void ReportFile::add(const Json& entry) {
 void ReportFile::publish() {
   file_.append(std::string("\n").append(kStepsEnd).append("\n  \"frames\": {"));
   for (std::size_t i = 0; i < frames_.size(); ++i)
-    file_.append((i == 0 ? "\n    " : ",\n    ") + json_text(frames_[i].first) + ": " +
-                 json_text(frames_[i].second));
+    file_.append((i == 0 ? "\n    " : ",\n    ") + json_text(frames_[i].first) + ": " + json_text(frames_[i].second));
   file_.append("\n  }\n}\n");
   file_.publish();
 }
