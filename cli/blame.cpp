@@ -1,4 +1,5 @@
 // `relook blame`: which steps of a run changed a pixel, through which objects and lights.
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <span>
@@ -7,6 +8,8 @@
 #include "engine/cached_image.h"
 #include "engine/pixel_history.h"
 #include "load_cache.h"
+#include "outputs.h"
+#include "report/edit_hashes.h"
 #include "report/places.h"
 #include "report/report_file.h"
 #include "values.h"
@@ -143,6 +146,9 @@ class Blame {
 ExitCode run_blame(const Arguments& arguments, Console& console) {
   const auto [x, y] = parse_pixel("PIXEL", arguments.inputs[1]);
   const RunSource source = read_run(arguments);
+  const std::array<std::filesystem::path, 2> parts{source.journal.path, source.cache};
+  require_not_outputs(arguments, parts, "a part of the run");
+  require_not_outputs(arguments, files_of(source.journal), "a file of the journal");
   const std::unique_ptr<PixelHistory> pixel = open_pixel(source, x, y);
   const Rgba color = pixel->color();
   const std::vector<std::string> paths = pixel->paths();

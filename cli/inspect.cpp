@@ -5,6 +5,7 @@
 #include "inspect_journal.h"
 #include "load_cache.h"
 #include "load_scene.h"
+#include "outputs.h"
 #include "scene/look.h"
 #include "verbs.h"
 
@@ -38,6 +39,7 @@ std::size_t count(const Json& look, Section section) {
 LoadedDocument load_lit_document(const Arguments& arguments) {
   const ViewArguments& view = arguments.view;
   LoadedDocument loaded = load_document(arguments.inputs[0], view);
+  require_not_outputs(arguments, loaded.files, "a file of the scene");
   if (view.auto_lights || !view.camera.empty()) static_cast<void>(set_up_inspection(loaded, view));
   return loaded;
 }

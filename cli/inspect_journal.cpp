@@ -8,6 +8,8 @@
 #include "edit/journal.h"
 #include "load_cache.h"
 #include "load_scene.h"
+#include "outputs.h"
+#include "report/edit_hashes.h"
 
 namespace relook {
 namespace {
@@ -21,6 +23,7 @@ SceneState open_state(const Arguments& arguments, Console& console) {
     return {std::move(content.document), content.camera, content.pyramids};
   }
   LoadedDocument loaded = load_document(arguments.scene, arguments.view);
+  require_not_outputs(arguments, loaded.files, "a file of the scene");
   const Camera camera = set_up_inspection(loaded, arguments.view);
   console.warn(loaded.warnings);
   return {std::move(loaded.document), camera, std::make_shared<PyramidStore>()};
@@ -66,6 +69,7 @@ void print_step(const Json& entry, const std::string& label, Console& console) {
 
 void inspect_journal(const Arguments& arguments, Console& console) {
   const Journal journal = read_journal(arguments.inputs[0], [&] { console.check_interrupt(); });
+  require_not_outputs(arguments, files_of(journal), "a file of the journal");
   std::optional<SceneState> state;
   if (!arguments.scene.empty()) {
     state.emplace(open_state(arguments, console));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <utility>
@@ -76,6 +77,7 @@ std::vector<Input> inputs_of(const Arguments& arguments) {
   add(arguments.view.look_patch, "the patch of --look");
   add(arguments.scene, "the scene");
   add(arguments.cache, "the cache");
+  if (const char* config = std::getenv("OCIO")) add(config, "the config of $OCIO");
   return inputs;
 }
 

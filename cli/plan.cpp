@@ -6,6 +6,8 @@
 
 #include "edit/apply.h"
 #include "load_cache.h"
+#include "outputs.h"
+#include "report/edit_hashes.h"
 #include "verbs.h"
 
 namespace relook {
@@ -40,6 +42,7 @@ void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
 ExitCode run_plan(const Arguments& arguments, Console& console) {
   const std::string& cache = arguments.inputs[0];
   const Journal journal = read_journal(arguments.inputs[1], [&] { console.check_interrupt(); });
+  require_not_outputs(arguments, files_of(journal), "a file of the journal");
   const CacheContent content = load_mended_cache(cache);
   const ViewOptions view{content.samples, content.max_depth, content.shadow_bits};
   {

@@ -97,6 +97,10 @@ std::vector<RunPlan> plan_runs(const Arguments& arguments, const std::vector<Jou
   return plans;
 }
 
+std::string difference_text(std::uint64_t pixels_different) {
+  return pixels_different == 0 ? "" : ", of which " + std::to_string(pixels_different) + " pixels differ from full renders";
+}
+
 Json result_json(const Arguments& arguments, const RunPlan& plan) {
   Json result{{"run", printable(plan.folder().string())}, {"frames", plan.frames()}, {"kept", plan.kept_frames()}};
   if (arguments.json && arguments.report != ReportKind::none) {
@@ -108,8 +112,11 @@ Json result_json(const Arguments& arguments, const RunPlan& plan) {
 
 void require_fitting(const Arguments& arguments, const OpenedCache& opened) {
   const std::string& cache = arguments.inputs[0];
-  if (!arguments.scene.empty() && load_document(arguments.scene, arguments.view).hash != opened.scene_hash)
-    require_sound({CacheFault::other_scene, "", ""}, cache);
+  if (!arguments.scene.empty()) {
+    const LoadedDocument loaded = load_document(arguments.scene, arguments.view);
+    require_not_outputs(arguments, loaded.files, "a file of the scene");
+    if (loaded.hash != opened.scene_hash) require_sound({CacheFault::other_scene, "", ""}, cache);
+  }
   if (arguments.layers) require_layers(opened.state->scene());
   const std::uint32_t shadow_bits = opened.image.view.shadow_bits;
   if (arguments.shadow_bits.value_or(shadow_bits) != shadow_bits)
@@ -185,7 +192,7 @@ ExitCode run_replay(const Arguments& arguments, Console& console) {
     const bool is_complete = plans[i].is_complete();
     if (is_complete)
       console.line(printable(plans[i].folder().string()) + ": complete, all " + std::to_string(plans[i].frames()) +
-                   " frames are there");
+                   " frames are there" + difference_text(plans[i].pixels_different()));
     pixels_different += is_complete ? plans[i].pixels_different() : command.run(i);
     runs.push_back(result_json(arguments, plans[i]));
   }

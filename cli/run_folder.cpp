@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -27,24 +28,33 @@ std::string new_command_number() {
 
 using StepRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Ranges that were asked for so far, with one more; those that meet are one.
-StepRanges with_range(const Json& parts, std::uint32_t first, std::uint32_t last) {
-  StepRanges ranges{{first, last}};
-  if (parts.is_array())
-    for (const Json& part : parts) {
-      unsigned from = 0, to = 0;
-      if (part.is_string() && std::sscanf(part.get_ref<const std::string&>().c_str(), "%u-%u", &from, &to) == 2)
-        ranges.emplace_back(from, to);
-    }
-  std::ranges::sort(ranges);
-  StepRanges joined;
-  for (const auto& range : ranges) {
-    if (!joined.empty() && range.first <= joined.back().second + 1)
-      joined.back().second = std::max(joined.back().second, range.second);
-    else
-      joined.push_back(range);
+/// The ranges of a report; those that meet are one.
+StepRanges ranges_of(const Json& parts) {
+  StepRanges ranges;
+  for (const Json& part : parts.is_array() ? parts : Json::array()) {
+    unsigned from = 0, to = 0;
+    if (part.is_string() && std::sscanf(part.get_ref<const std::string&>().c_str(), "%u-%u", &from, &to) == 2)
+      ranges.emplace_back(from, to);
   }
-  return joined;
+  return ranges;
+}
+
+StepRanges joined(StepRanges ranges) {
+  std::ranges::sort(ranges);
+  StepRanges result;
+  for (const auto& range : ranges) {
+    if (!result.empty() && range.first <= result.back().second + 1)
+      result.back().second = std::max(result.back().second, range.second);
+    else
+      result.push_back(range);
+  }
+  return result;
+}
+
+/// Whether the frame of an entry is there.
+bool has_frame(const std::filesystem::path& run, const Json& entry) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(run / entry.at("frame").get<std::string>(), error);
 }
 
 }  // namespace
@@ -59,13 +69,7 @@ RunFolder::RunFolder(RunPlan& plan, const Journal& journal, Style style)
       preview_encoder_(style_.width, style_.height, style_.view) {
   make_folders(path_);
   progress_ = std::make_unique<ProgressFile>(path_, plan.first_step(), plan.last_step());
-  progress_->exclusively([&] {
-    plan.refresh();
-    plan.clear_way([&] { return progress_->lock_all_steps(); });
-  });
-  progress_->begin(plan.source());
-  plan.refresh();
-  progress_->unlock_other_steps();
+  plan.begin(*progress_);
   make_folders(path_ / "frames");
   make_folders(path_ / "previews");
 }
@@ -161,38 +165,38 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   const RunLedger ledger(path_);
   noted_bytes_ = progress_->size_bytes();
   const Json& before = ledger.head();
-  const auto is_there = [&](std::uint32_t step, std::size_t frame) {
-    const LedgerKey key = plan_.key_of(step, frame);
-    const RunLedger::Note* note = ledger.find(key);
-    return note != nullptr && plan_.is_of_journal(key, *note);
-  };
+  std::vector<std::pair<LedgerKey, RunLedger::Note>> notes;  // with their frames
+  std::vector<std::size_t> frames_there(journal_.steps.size() + 1);
+  for (const auto& [key, note] : ledger.notes()) {
+    if (!plan_.is_of_journal(key, note) || !has_frame(path_, ledger.entry(note))) continue;
+    notes.emplace_back(key, note);
+    if (plan_.is_frame(key)) ++frames_there[key.first];
+  }
   const auto missing_in = [&](std::uint32_t first, std::uint32_t last) {
     std::size_t missing = 0;
     for (std::uint32_t step = first; step <= std::min<std::size_t>(last, journal_.steps.size()); ++step)
-      for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame) missing += is_there(step, frame) ? 0 : 1;
+      missing += plan_.frames_in(step) - frames_there[step];
     return missing;
   };
-  const StepRanges parts =
-      with_range(before.is_object() ? before.value("parts", Json()) : Json(), plan_.first_step(), plan_.last_step());
+  // Asked for by others, too: what is missing there is missing, unless somebody is at it.
+  StepRanges ranges = ranges_of(before.is_object() ? before.value("parts", Json()) : Json());
+  ranges.emplace_back(plan_.first_step(), plan_.last_step());
+  for (const RunLedger::Task& task : ledger.tasks()) ranges.emplace_back(task.first_step, task.last_step);
   report.parts.clear();
-  std::size_t missing = 0, frames = 0;
-  for (const auto& [first, last] : parts) {
+  std::size_t missing = 0;
+  for (const auto& [first, last] : ranges) missing += progress_->is_being_done(first, last) ? 0 : missing_in(first, last);
+  for (const auto& [first, last] : joined(ranges))
     report.parts.push_back(std::to_string(first) + "-" + std::to_string(last));
-    missing += missing_in(first, last);
-  }
-  for (const auto& [key, note] : ledger.notes())
-    frames += plan_.is_of_journal(key, note) && plan_.is_frame(key) ? 1 : 0;
   report.interrupted = interrupted || missing > 0;
-  report.frames = frames;
-  report.resumed_frames = frames - std::min(frames, own_frames_);
+  report.frames = std::accumulate(frames_there.begin(), frames_there.end(), std::size_t{0});
+  report.resumed_frames = report.frames - std::min(report.frames, own_frames_);
   if (!report.full_render_seconds && before.is_object() && before.value("full_render_seconds", Json()).is_number())
     report.full_render_seconds = before["full_render_seconds"].get<double>();
 
   report_file_ = std::make_unique<ReportFile>(path_ / kReportName, report_head_json(report));
-  for (const auto& [key, note] : ledger.notes()) {
-    if (!plan_.is_of_journal(key, note)) continue;
+  for (const auto& [key, note] : notes) {
     Json entry = ledger.entry(note);
-    entry["resumed"] = entry.value("command", "") != command_;
+    entry["resumed"] = entry.at("command") != command_;
     if (key.first > 0) entry["name"] = journal_.steps[key.first - 1].name;
     report_file_->add(entry);
   }
@@ -201,6 +205,7 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
 }
 
 void RunFolder::write_page(const RunReport& report, bool is_quick, const std::function<void()>& check) {
+  plan_.remove_unfinished_page();
   const ReportEntries entries = report_file_->entries();
   write_run_page({path_, report_head_json(report), entries, journal_, !is_quick, check});
 }
@@ -215,7 +220,7 @@ void RunFolder::write_report(RunReport& report, bool interrupted, const std::fun
   if (style_.report == ReportKind::html) {
     // Of many commands that write one run, not each makes the whole page anew.
     const bool is_quick = interrupted || !is_alone || !(is_whole || 2 * own_frames_ >= report.frames);
-    progress_->exclusively_for_page([&] { write_page(report, is_quick, check); });
+    progress_->exclusively_for_page(!interrupted, [&] { write_page(report, is_quick, check); });
   }
   if (!report.interrupted && progress_->lock_all_steps() && progress_->size_bytes() == noted_bytes_)
     progress_->remove();

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <iterator>
+#include <set>
 
 #include "base/error.h"
 #include "base/file_names.h"
@@ -52,11 +54,25 @@ std::string unfinished_name(const std::filesystem::path& path) {
   return std::string(name_of_temporary(path.filename().string()));
 }
 
-/// The step that the file of a frame is of: 3 of "0003_01.exr".
-std::optional<std::uint32_t> step_of_file(const std::string& name) {
+/// "0003_01" of "0003_01.exr", "0003_01_groups.png".
+std::string frame_stem(const std::string& name) {
+  const std::size_t end = name.find_first_not_of("0123456789_");
+  const std::string stem = name.substr(0, end);
+  return stem.ends_with('_') ? stem.substr(0, stem.size() - 1) : stem;
+}
+
+/// Whether a name is one that frames, previews or overlays have: 0003, 0003_01, with a kind and a suffix.
+bool is_frame_stem(const std::string& name) {
+  const std::string stem = frame_stem(name);
+  const std::size_t step_digits = std::min(stem.find('_'), stem.size());
+  const std::string_view rest = std::string_view(name).substr(std::min(stem.size(), name.size()));
+  const bool has_kind = rest == ".exr" || rest == ".png" || rest == "_dependent.png" || rest == "_touched.png" || rest == "_groups.png";
+  return has_kind && step_digits >= 4 && step_digits <= 9 && std::ranges::count(stem, '_') <= 1;
+}
+
+std::uint32_t step_of(const std::string& name) {
   std::uint32_t step = 0;
-  const auto read = std::from_chars(name.data(), name.data() + name.size(), step);
-  if (read.ec != std::errc() || read.ptr == name.data()) return std::nullopt;
+  std::from_chars(name.data(), name.data() + name.size(), step);
   return step;
 }
 
@@ -128,10 +144,14 @@ void RunPlan::look_into_folder() {
 void RunPlan::judge_run() {
   const bool has_nothing = ledger_->source().is_null() && ledger_->notes().empty() && !is_there(folder_ / kReportName);
   if (has_nothing) return;  // killed as it began
-  std::optional<std::string> other = difference_of_sources(ledger_->source(), source_);
+  std::optional<std::string> other;
+  if (ledger_->has_foreign_report())
+    other = "a report.json that this version of relook has not written, or that was changed since";
+  else
+    other = difference_of_sources(ledger_->source(), source_);
   replaces_all_ = other.has_value();
   if (!other) other = other_journal();
-  replaces_some_ = other.has_value();
+  replaces_some_ = other.has_value() || has_other_names();
   if (!other) return;
   if (!arguments_.overwrite) throw UsageError(folder_.string(), "holds " + *other + "; --overwrite replaces it");
   if (replaces_all_) require_known_files();
@@ -148,6 +168,10 @@ const std::string* RunPlan::expected_edits(const LedgerKey& key) const {
 }
 
 std::optional<std::string> RunPlan::other_journal() const {
+  for (const RunLedger::Task& task : ledger_->tasks())
+    if (task.last_step > journal_.steps.size() || hashes_.after(task.last_step) != task.edits)
+      return "frames of another journal (a command is, or was, at its steps " + std::to_string(task.first_step) + " to " +
+             std::to_string(task.last_step) + ")";
   for (const auto& [key, note] : ledger_->notes()) {
     if (is_of_journal(key, note)) continue;
     const std::string* expected = expected_edits(key);
@@ -181,8 +205,8 @@ void RunPlan::require_known_files() const {
   }
 }
 
-bool RunPlan::is_kept(const Json& entry) const {
-  if (arguments_.fresh) return false;
+bool RunPlan::is_kept(const RunLedger::Note& note, const Json& entry) const {
+  if (arguments_.fresh && !note.is_fresh) return false;
   try {
     if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
     if (arguments_.verify_percent && entry.at("verify_percent").is_null()) return false;
@@ -200,7 +224,8 @@ bool RunPlan::is_kept(const Json& entry) const {
 
 void RunPlan::require_free(const std::string& name) const {
   const std::filesystem::path path = folder_ / name;
-  if (!is_there(path)) return;
+  std::error_code error;
+  if (!is_there(path) || (std::filesystem::is_regular_file(path, error) && std::filesystem::is_empty(path, error))) return;
   const auto part = std::ranges::find(kParts, name.substr(0, name.find('/')), &RunPart::folder);
   if (!is_own_file(path, part->kind))
     throw UsageError(path.string(), "is where a file of the run is to go, and not of relook: not replaced");
@@ -220,7 +245,7 @@ void RunPlan::find_kept() {
       const RunLedger::Note* note = ledger_ && !replaces_all_ ? ledger_->find(key_of(step, frame)) : nullptr;
       if (note != nullptr && note->edits == hashes_.at(step, frame)) {
         const Json entry = ledger_->entry(*note);
-        kept[frame] = is_kept(entry) && entry.at("frame") == frame_name(here);
+        kept[frame] = is_kept(*note, entry) && entry.at("frame") == frame_name(here);
         if (kept[frame] && entry.at("verify").is_object())
           pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
         has_all_in_report = has_all_in_report && note->is_in_report;
@@ -229,9 +254,12 @@ void RunPlan::find_kept() {
       if (kept[frame] || replaces_all_) continue;
       require_free(frame_name(here));
       require_free(preview_name(here));
+      if (!arguments_.overlays) continue;
+      for (const char* kind : {"_dependent.png", "_touched.png", "_groups.png"})
+        require_free("overlays/" + std::filesystem::path(frame_name(here)).stem().string() + kind);
     }
   }
-  const bool wants_page = arguments_.report == ReportKind::html && !is_there(folder_ / "report.html");
+  const bool wants_page = arguments_.report == ReportKind::html && !has_current_page();
   const bool lacks_baseline = arguments_.baseline && ledger_ && ledger_->head().is_object() &&
                               ledger_->head().value("full_render_seconds", Json()).is_null();
   is_complete_ = kept_frames_ == frames_ && !replaces_some_ && !wants_page && !lacks_baseline &&
@@ -271,64 +299,96 @@ bool RunPlan::keeps_whole_step(std::uint32_t step) const {
   return note != nullptr && note->edits == hashes_.after(step);
 }
 
-/// A hundredth frame gives all frames of its step another digit.
-bool RunPlan::may_be_renamed(const LedgerKey& key) const {
+/// Whether report.html was written after report.json.
+bool RunPlan::has_current_page() const {
+  std::error_code error;
+  const auto page = std::filesystem::last_write_time(folder_ / "report.html", error);
+  return !error && page >= std::filesystem::last_write_time(folder_ / kReportName, error) && !error;
+}
+
+void RunPlan::begin(ProgressFile& progress) {
+  const RunLedger::Task task{first_, last_, hashes_.after(last_), arguments_.fresh};
+  progress.exclusively([&] {
+    refresh();
+    std::vector<Json> lines{RunLedger::head_of(task, source_)};
+    if (replaces_some_) {
+      if (!progress.lock_all_steps())
+        throw BusyError(folder_.string(), "another replay is writing the run that is to be replaced");
+      if (!replaces_all_) std::ranges::move(entries_to_stay(), std::back_inserter(lines));
+      remove_replaced();
+      progress.clear();
+    }
+    progress.append_in_turn(lines);
+    remove_leftovers();
+  });
+  progress.unlock_other_steps();
+  refresh();
+}
+
+/// Whether a wedge or drag has come to another number of digits.
+bool RunPlan::has_other_names() const {
   constexpr std::size_t kThreeDigits = 100;
-  return frames_of(journal_.steps[key.first - 1]).size() >= kThreeDigits;
+  return std::ranges::any_of(ledger_->notes(), [&](const auto& entry) {
+    const auto& [key, note] = entry;
+    const bool may_have = !is_frame({key.first, kWholeStep}) && frames_in(key.first) >= kThreeDigits;
+    return may_have && is_of_journal(key, note) && ledger_->entry(note).at("frame") != frame_name_of(key);
+  });
 }
 
-bool RunPlan::has_its_name(const LedgerKey& key, const Json& entry) const {
-  return key.second == kWholeStep || entry.value("frame", "") == frame_name(place(key.first, key.second - 1));
-}
-
-void RunPlan::clear_way(const std::function<bool()>& locks_all) const {
-  if (replaces_all_) {
-    if (!locks_all()) throw BusyError(folder_.string(), "another replay is writing the run that is to be replaced");
-    for (const RunPart& part : kParts) {
-      for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) remove_file(file);
-      std::error_code not_empty;
-      std::filesystem::remove(folder_ / part.folder, not_empty);
-    }
-    for (const std::filesystem::path& path : entries_of(folder_))
-      if (path.filename() != kProgressName && !unfinished_name(path).empty()) remove_file(path);
-    for (const std::string_view name : {kReportName, std::string_view("report.html")})
-      if (is_there(folder_ / name)) remove_file(folder_ / name);
-    return;
-  }
-  remove_leftovers();
-  if (!ledger_) return;
-  // Frames of another journal, in steps that nobody else is at: this command's, and those that the journal lacks.
+/// Of this journal, under the names that its frames have now: a hundredth frame gives those of its step another digit.
+std::vector<Json> RunPlan::entries_to_stay() const {
+  std::vector<Json> entries;
   for (const auto& [key, note] : ledger_->notes()) {
-    const bool is_ours = key.first > journal_.steps.size() || (key.first >= first_ && key.first <= last_);
-    const bool has_no_files = key.second == kWholeStep && !is_frame(key);  // they are those of its last frame
-    if (has_no_files) continue;
-    const bool is_same = is_of_journal(key, note);
-    if (!is_ours || (is_same && (key.second == kWholeStep || !may_be_renamed(key)))) continue;
-    const Json entry = ledger_->entry(note);
-    if (!entry.contains("files") || (is_same && has_its_name(key, entry))) continue;
-    for (const auto& [name, stamp] : entry["files"].items()) {
-      const auto part = std::ranges::find(kParts, name.substr(0, name.find('/')), &RunPart::folder);
-      const bool is_plain = part != kParts.end() && std::ranges::count(name, '/') == 1;
-      if (is_plain && is_own_file(folder_ / name, part->kind)) remove_file(folder_ / name);
-    }
+    if (!is_of_journal(key, note)) continue;
+    Json entry = ledger_->entry(note);
+    if (entry.at("frame") == frame_name_of(key)) entries.push_back(std::move(entry));
   }
+  return entries;
 }
 
-/// Temporary files of commands that were killed at the steps that are locked now, or while they wrote the report.
+std::string RunPlan::frame_name_of(const LedgerKey& key) const {
+  const auto& [step, number] = key;
+  if (number != kWholeStep) return frame_name(place(step, number - 1));
+  return frame_name(step == 0 ? FramePlace() : last_place_of(journal_.steps[step - 1], step));
+}
+
+/// With all steps locked. Files that relook has written, as frames of no step of this journal, or all of another run.
+void RunPlan::remove_replaced() const {
+  std::set<std::string> stems;  // of frames that stay
+  if (!replaces_all_)
+    for (const auto& [key, note] : ledger_->notes())
+      if (is_of_journal(key, note)) stems.insert(std::filesystem::path(frame_name_of(key)).stem().string());
+  for (const RunPart& part : kParts) {
+    if (part.folder == "pixels" && !replaces_all_) continue;  // the page sees to its own
+    const std::filesystem::path folder = folder_ / part.folder;
+    for (const std::filesystem::path& file : entries_of(folder)) {
+      const std::string unfinished = unfinished_name(file), name = unfinished.empty() ? file.filename().string() : unfinished;
+      if (!replaces_all_ && (!is_frame_stem(name) || stems.contains(frame_stem(name)))) continue;
+      if (!unfinished.empty() || is_own_file(file, part.kind)) remove_file(file);
+    }
+    std::error_code not_empty;
+    const bool is_folder = std::filesystem::symlink_status(folder, not_empty).type() == std::filesystem::file_type::directory;
+    if (is_folder) std::filesystem::remove(folder, not_empty);
+  }
+  for (const std::string_view name : {kReportName, std::string_view("report.html")})
+    if (is_there(folder_ / name)) remove_file(folder_ / name);
+}
+
+void RunPlan::remove_unfinished_page() const {
+  for (const std::filesystem::path& file : entries_of(folder_))
+    if (unfinished_name(file) == "report.html") remove_file(file);
+}
+
+/// Temporary files of commands that were killed at the steps that are locked now, or while they wrote report.json.
 void RunPlan::remove_leftovers() const {
   for (const RunPart& part : kParts)
     for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) {
-      if (part.folder == "pixels") continue;  // the page sees to its own
-      const std::string unfinished = unfinished_name(file);
-      const std::string name = unfinished.empty() ? file.filename().string() : unfinished;
-      const std::optional<std::uint32_t> step = step_of_file(name);
-      if (!step) continue;
-      const bool is_ours = *step >= first_ && *step <= last_;
-      const bool is_of_none = replaces_some_ && *step > journal_.steps.size();  // and noted nowhere
-      if (unfinished.empty() ? is_of_none && is_own_file(file, part.kind) : is_ours || is_of_none) remove_file(file);
+      const std::string name = unfinished_name(file);
+      const bool is_ours = part.folder != "pixels" && is_frame_stem(name) && step_of(name) >= first_ && step_of(name) <= last_;
+      if (is_ours) remove_file(file);
     }
   for (const std::filesystem::path& file : entries_of(folder_))
-    if (unfinished_name(file).starts_with("report.")) remove_file(file);
+    if (unfinished_name(file) == kReportName) remove_file(file);
 }
 
 }  // namespace relook

@@ -3,7 +3,6 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "arguments.h"
 #include "edit/journal.h"
 #include "report/edit_hashes.h"
+#include "report/progress_file.h"
 #include "report/run_ledger.h"
 
 namespace relook {
@@ -39,13 +39,14 @@ class RunPlan {
   [[nodiscard]] std::uint64_t pixels_different() const { return pixels_different_; }
   /// Whether there is nothing to do: all frames, and the report that is asked for, are there.
   [[nodiscard]] bool is_complete() const { return is_complete_; }
-  /// Reads the folder again, since others may have gone on.
-  void refresh();
 
-  /// Removes what --overwrite replaces and killed commands have left, by name. To be called with the steps locked;
-  /// `locks_all`: sees to it that nobody else is at any step of the run, false if somebody is: then a run of another
-  /// source is not replaced (BusyError).
-  void clear_way(const std::function<bool()>& locks_all) const;
+  /// Notes in `progress`, which has locked the steps, that they are being done; looks into the folder again, as others
+  /// may have gone on; removes what --overwrite replaces and what killed commands have left, by name. Throws as the
+  /// constructor, and BusyError when something is to be replaced and another command is at any step.
+  void begin(ProgressFile& progress);
+
+  /// What a killed command has left of report.html; in turn for the page.
+  void remove_unfinished_page() const;
 
   [[nodiscard]] std::size_t frames_in(std::uint32_t step) const;
   [[nodiscard]] LedgerKey key_of(std::uint32_t step, std::size_t frame) const;
@@ -55,16 +56,20 @@ class RunPlan {
 
  private:
   [[nodiscard]] FramePlace place(std::uint32_t step, std::size_t frame) const;
+  void refresh();
   void look_into_folder();
   void judge_run();
   void require_known_files() const;
   void find_kept();
   [[nodiscard]] std::optional<std::string> other_journal() const;
   [[nodiscard]] const std::string* expected_edits(const LedgerKey& key) const;
-  [[nodiscard]] bool is_kept(const Json& entry) const;
-  [[nodiscard]] bool may_be_renamed(const LedgerKey& key) const;
-  [[nodiscard]] bool has_its_name(const LedgerKey& key, const Json& entry) const;
+  [[nodiscard]] bool is_kept(const RunLedger::Note& note, const Json& entry) const;
+  [[nodiscard]] bool has_current_page() const;
   void require_free(const std::string& name) const;
+  [[nodiscard]] std::vector<Json> entries_to_stay() const;
+  [[nodiscard]] bool has_other_names() const;
+  [[nodiscard]] std::string frame_name_of(const LedgerKey& key) const;
+  void remove_replaced() const;
   void remove_leftovers() const;
 
   const Arguments& arguments_;

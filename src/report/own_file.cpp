@@ -39,6 +39,16 @@ bool has_format(const std::filesystem::path& path, std::string_view prefix) {
   return format_of(path).starts_with(prefix);
 }
 
+/// The first write of a command may have been cut short anywhere.
+bool starts_like_progress(std::string_view start) {
+  constexpr std::size_t kHashDigits = 32;
+  constexpr std::string_view kHead = " {\"relook\":\"progress/";
+  const std::string_view hash = start.substr(0, kHashDigits);
+  if (hash.find_first_not_of("0123456789abcdef") != std::string_view::npos) return false;
+  const std::string_view rest = start.substr(hash.size());
+  return rest.substr(0, kHead.size()) == kHead.substr(0, rest.size());
+}
+
 bool is_of_kind(const std::filesystem::path& path, OwnKind kind) {
   switch (kind) {
     case OwnKind::frame:
@@ -51,10 +61,8 @@ bool is_of_kind(const std::filesystem::path& path, OwnKind kind) {
       return starts_with(path, "relook_");
     case OwnKind::report:
       return starts_with(path, "{\n  \"relook\": \"report/") || has_format(path, "report/");
-    case OwnKind::progress: {
-      const std::string start = start_of(path, 256);
-      return start.empty() || start.find(" {\"relook\":\"progress/") == 32;
-    }
+    case OwnKind::progress:
+      return starts_like_progress(start_of(path, 64));
     case OwnKind::comparison:
       return has_format(path, "compare/");
     case OwnKind::plan:

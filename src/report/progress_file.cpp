@@ -17,12 +17,10 @@
 namespace relook {
 namespace {
 
-constexpr std::string_view kFormat = "progress/2";
 constexpr std::size_t kHashDigits = 32;
 
-/// Locks or unlocks bytes of an open file; false with errno when somebody else has one of them. `command`: F_OFD_SETLK,
-/// or F_OFD_SETLKW, which waits.
-bool set_lock(int descriptor, int command, short kind, std::uint64_t first, std::uint64_t count) {
+/// Locks or unlocks bytes of an open file; false with errno when somebody else has one of them.
+bool set_lock(int descriptor, short kind, std::uint64_t first, std::uint64_t count) {
   if (count == 0) return true;  // to the system that is all bytes
   struct flock lock {};
   lock.l_type = kind;
@@ -30,7 +28,7 @@ bool set_lock(int descriptor, int command, short kind, std::uint64_t first, std:
   lock.l_start = static_cast<off_t>(first);
   lock.l_len = static_cast<off_t>(count);
   int result = 0;
-  do result = ::fcntl(descriptor, command, &lock);
+  do result = ::fcntl(descriptor, F_OFD_SETLK, &lock);
   while (result != 0 && errno == EINTR);
   return result == 0;
 }
@@ -67,7 +65,7 @@ ProgressFile::ProgressFile(const std::filesystem::path& run, std::uint32_t first
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail_to_write(path_, "create the file", errno);
     const bool is_locked =
-        set_lock(descriptor_, F_OFD_SETLK, F_WRLCK, first_step, std::uint64_t{last_step} - first_step + 1);
+        set_lock(descriptor_, F_WRLCK, first_step, std::uint64_t{last_step} - first_step + 1);
     const int error = errno;
     const bool is_done = is_locked ? is_current(descriptor_, path_) : !is_held(error);
     if (is_done) return;
@@ -81,39 +79,55 @@ ProgressFile::ProgressFile(const std::filesystem::path& run, std::uint32_t first
 
 ProgressFile::~ProgressFile() { ::close(descriptor_); }
 
-ProgressFile::Turn::Turn(const ProgressFile& file, std::uint64_t byte) : file_(file), byte_(byte) {
-  static_cast<void>(set_lock(file.descriptor_, F_OFD_SETLKW, F_WRLCK, byte, 1));
+ProgressFile::Turn::Turn(const ProgressFile& file, std::uint64_t byte, int most_seconds) : file_(file), byte_(byte) {
+  constexpr auto kPause = std::chrono::milliseconds(5);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(most_seconds);
+  for (;;) {
+    is_ours_ = set_lock(file.descriptor_, F_WRLCK, byte, 1) || !is_held(errno);
+    if (is_ours_ || std::chrono::steady_clock::now() >= end) return;
+    std::this_thread::sleep_for(kPause);
+  }
 }
 
-ProgressFile::Turn::~Turn() { static_cast<void>(set_lock(file_.descriptor_, F_OFD_SETLK, F_UNLCK, byte_, 1)); }
+ProgressFile::Turn::~Turn() {
+  if (is_ours_) static_cast<void>(set_lock(file_.descriptor_, F_UNLCK, byte_, 1));
+}
 
 /// What a killed command left of a line is ended first.
-void ProgressFile::append_line(std::string_view text) {
-  exclusively([&] {
-    const off_t size = ::lseek(descriptor_, 0, SEEK_END);
-    if (size < 0) fail_to_write(path_, "write", errno);
-    char last = '\n';
-    const bool is_readable = size == 0 || ::pread(descriptor_, &last, 1, size - 1) == 1;
-    std::string line = is_readable && last == '\n' ? "" : "\n";
-    line.append(hash128(bytes_of(text))).append(" ").append(text).append("\n");
-    append_synced(descriptor_, bytes_of(line), path_);
-  });
+void ProgressFile::append_in_turn(std::span<const Json> entries) {
+  const off_t size = ::lseek(descriptor_, 0, SEEK_END);
+  if (size < 0) fail_to_write(path_, "write", errno);
+  char last = '\n';
+  const bool is_readable = size == 0 || ::pread(descriptor_, &last, 1, size - 1) == 1;
+  std::string lines = is_readable && last == '\n' ? "" : "\n";
+  for (const Json& entry : entries) {
+    const std::string text = json_text(entry);
+    lines.append(hash128(bytes_of(text))).append(" ").append(text).append("\n");
+  }
+  append_synced(descriptor_, bytes_of(lines), path_);
 }
 
-void ProgressFile::append(const Json& entry) { append_line(json_text(entry)); }
+void ProgressFile::clear() {
+  if (::ftruncate(descriptor_, 0) != 0) fail_to_write(path_, "empty the file", errno);
+}
 
-void ProgressFile::begin(const Json& source) {
-  append_line(std::string("{\"relook\":\"") + std::string(kFormat) + "\",\"source\":" + json_text(source) + "}");
+bool ProgressFile::is_being_done(std::uint32_t first_step, std::uint32_t last_step) const {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = static_cast<off_t>(first_step);
+  lock.l_len = static_cast<off_t>(std::uint64_t{last_step} - first_step + 1);
+  return ::fcntl(descriptor_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
 bool ProgressFile::lock_all_steps() {
-  return set_lock(descriptor_, F_OFD_SETLK, F_WRLCK, 0, kStepBytes) || !is_held(errno);
+  return set_lock(descriptor_, F_WRLCK, 0, kStepBytes) || !is_held(errno);
 }
 
 void ProgressFile::unlock_other_steps() {
-  static_cast<void>(set_lock(descriptor_, F_OFD_SETLK, F_UNLCK, 0, first_step_));
+  static_cast<void>(set_lock(descriptor_, F_UNLCK, 0, first_step_));
   static_cast<void>(
-      set_lock(descriptor_, F_OFD_SETLK, F_UNLCK, std::uint64_t{last_step_} + 1, kStepBytes - last_step_ - 1));
+      set_lock(descriptor_, F_UNLCK, std::uint64_t{last_step_} + 1, kStepBytes - last_step_ - 1));
 }
 
 std::uint64_t ProgressFile::size_bytes() const {

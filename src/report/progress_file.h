@@ -1,7 +1,7 @@
 // RUN/progress.jsonl: what the commands that write a run have finished, appended frame by frame and synced, so that a
 // run that was killed can be taken up again; gone once report.json has all of it and no command is writing any more. A
-// line is the XXH3-128 of its text, a space, and the text: {"relook":"progress/2","source":{...}} where a command
-// begins, and entries as in report.json. A line that was cut short counts as none.
+// line is the XXH3-128 of its text, a space, and the text: a head where a command begins ({"relook":"progress/2", what it
+// is to do}), and entries as in report.json. A line that was cut short counts as none.
 //
 // It is also the lock of the run: a command holds the bytes of its steps (byte k for step k, open file description
 // locks), so that commands with other steps of the same run work side by side, on other hosts, too, and two with the
@@ -9,6 +9,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -32,21 +33,29 @@ class ProgressFile {
   ProgressFile& operator=(const ProgressFile&) = delete;
 
   /// Adds a line and syncs it to disk, while no other command does.
-  void append(const Json& entry);
-  /// Notes that a command of this source begins.
-  void begin(const Json& source);
-  /// Runs `work` while no other command appends or does the same.
+  void append(const Json& entry) {
+    exclusively([&] { append_in_turn({&entry, 1}); });
+  }
+  /// Within exclusively(): adds lines.
+  void append_in_turn(std::span<const Json> entries);
+  /// Within exclusively(), with all steps locked: forgets all that is there.
+  void clear();
+  /// Runs `work` while no other command appends or does the same. One that has been stopped in its turn is waited for
+  /// for some seconds only.
   template <class Work>
   void exclusively(const Work& work) {
     const Turn turn(*this, kAppendByte);
     work();
   }
-  /// The same for the page, which takes longer: appending goes on meanwhile.
+  /// The same for the page, which takes longer: appending goes on meanwhile. `waits`: false if another command's page
+  /// is to do, then nothing is run.
   template <class Work>
-  void exclusively_for_page(const Work& work) {
-    const Turn turn(*this, kPageByte);
-    work();
+  void exclusively_for_page(bool waits, const Work& work) {
+    const Turn turn(*this, kPageByte, waits ? kLongWait : 0);
+    if (turn.is_ours() || waits) work();
   }
+  /// Whether another command is at one of these steps.
+  [[nodiscard]] bool is_being_done(std::uint32_t first_step, std::uint32_t last_step) const;
   /// Whether no other command is at any step of the run; if so, none begins until unlock_other_steps(). Not for long:
   /// commands that begin wait for a second at most.
   [[nodiscard]] bool lock_all_steps();
@@ -59,18 +68,20 @@ class ProgressFile {
  private:
   static constexpr std::uint64_t kStepBytes = std::uint64_t{1} << 40, kAppendByte = kStepBytes,
                                  kPageByte = kStepBytes + 1;
+  static constexpr int kShortWait = 5, kLongWait = 600;  // seconds
   class Turn {
    public:
-    Turn(const ProgressFile& file, std::uint64_t byte);
+    Turn(const ProgressFile& file, std::uint64_t byte, int most_seconds = kShortWait);
     ~Turn();
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;
+    [[nodiscard]] bool is_ours() const { return is_ours_; }
 
    private:
     const ProgressFile& file_;
     std::uint64_t byte_;
+    bool is_ours_ = false;
   };
-  void append_line(std::string_view text);
 
   std::filesystem::path path_;
   std::uint32_t first_step_, last_step_;

@@ -1,5 +1,8 @@
 #include "report/run_ledger.h"
 
+#include <algorithm>
+#include <cstdint>
+
 #include "base/error.h"
 #include "base/hash.h"
 #include "report/own_file.h"
@@ -12,6 +15,26 @@ namespace {
 bool is_file(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::is_regular_file(path, error);
+}
+
+/// Throws InputError unless an entry has what its readers rely on.
+void check_entry(const Json& entry) {
+  const JsonView view(entry, kReportName);
+  for (const char* key : {"name", "class", "frame", "frame_hash", "preview", "edits", "command"})
+    (void)view.at(key).text();
+  if (const JsonView verify = view.at("verify"); !verify.value().is_null())
+    (void)verify.at("pixels_different").integer(0, INT64_MAX);
+  const JsonView files = view.at("files");
+  files.require_object();
+  for (const auto& file : files.value().items()) {
+    const JsonView stamp = files.at(file.key());
+    (void)stamp.at("hash").text();
+    (void)stamp.at("bytes").integer(0, INT64_MAX);
+    (void)stamp.at("modified").integer(INT64_MIN, INT64_MAX);
+  }
+  const std::string stem = std::filesystem::path(view.at("frame").text()).stem().string();
+  if (view.at("frame").text() != "frames/" + stem + ".exr" || view.at("preview").text() != "previews/" + stem + ".png")
+    view.at("frame").fail("not a frame of a run");
 }
 
 }  // namespace
@@ -34,7 +57,7 @@ RunLedger::RunLedger(std::filesystem::path run) : run_(std::move(run)) {
 void RunLedger::read_report() {
   const std::filesystem::path path = run_ / kReportName;
   if (!is_own_file(path, OwnKind::report)) return;
-  is_run_ = true;
+  is_run_ = has_foreign_report_ = true;
   report_ = std::make_unique<LineReader>(path);
   std::string head, line;
   bool has_steps = false;
@@ -50,6 +73,7 @@ void RunLedger::read_report() {
   } catch (const InputError&) {
     return;
   }
+  has_foreign_report_ = source_.is_null();
   while (report_->next(line) && line != kStepsEnd) take(line, *report_, 0, true);
 }
 
@@ -62,9 +86,33 @@ void RunLedger::read_progress() {
     const std::string_view text = progress_text(line);
     if (text.empty()) continue;
     if (text.starts_with(kProgressHead))
-      source_ = parse_json(text, path.string()).value("source", Json());
+      take_head(parse_json(text, path.string()));
     else
       take(text, *progress_, line.size() - text.size(), false);
+  }
+}
+
+Json RunLedger::head_of(const Task& task, const Json& source) {
+  // As text in the order of the names: what tells the file comes first.
+  return {{"relook", "progress/2"},
+          {"source", source},
+          {"steps_edits", task.edits},
+          {"steps_first", task.first_step},
+          {"steps_fresh", task.is_fresh},
+          {"steps_last", task.last_step}};
+}
+
+void RunLedger::take_head(const Json& head) {
+  try {
+    const JsonView view(head, kProgressName);
+    Task task;
+    task.first_step = static_cast<std::uint32_t>(view.at("steps_first").integer(0, kWholeStep - 1));
+    task.last_step = static_cast<std::uint32_t>(view.at("steps_last").integer(task.first_step, kWholeStep - 1));
+    task.edits = view.at("steps_edits").text();
+    task.is_fresh = view.at("steps_fresh").boolean();
+    source_ = view.at("source").value();
+    tasks_.push_back(std::move(task));
+  } catch (const InputError&) {  // no head
   }
 }
 
@@ -72,8 +120,13 @@ void RunLedger::take(std::string_view text, const LineReader& file, std::size_t 
   if (text.ends_with(',')) text.remove_suffix(1);
   try {
     const Json entry = parse_json(text, kReportName);
-    Note note{JsonView(entry, kReportName).at("edits").text(), is_in_report, file.offset() + skipped, text.size()};
-    notes_.insert_or_assign(ledger_key(entry), std::move(note));
+    check_entry(entry);
+    const LedgerKey key = ledger_key(entry);
+    const bool is_fresh = std::ranges::any_of(tasks_, [&](const Task& task) {
+      return task.is_fresh && task.first_step <= key.first && key.first <= task.last_step;
+    });
+    Note note{entry["edits"].get<std::string>(), is_in_report, is_fresh && !is_in_report, file.offset() + skipped, text.size()};
+    notes_.insert_or_assign(key, std::move(note));
   } catch (const InputError&) {  // no entry
   }
 }

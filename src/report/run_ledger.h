@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/json.h"
 #include "report/line_reader.h"
@@ -25,9 +26,17 @@ class RunLedger {
   struct Note {
     std::string edits;  // hash
     bool is_in_report = false;
+    bool is_fresh = false;  // made by a command with --fresh that is not complete
     std::uint64_t offset = 0;
     std::size_t bytes = 0;
   };
+  /// What a command that has not completed the run was, or is, to do.
+  struct Task {
+    std::uint32_t first_step = 0, last_step = 0;
+    std::string edits;  // hash after the last step
+    bool is_fresh = false;
+  };
+  [[nodiscard]] static Json head_of(const Task& task, const Json& source);
 
   /// Reads what is there; lines that are cut short or make no sense count as none. Throws InputError when report.json
   /// or progress.jsonl cannot be read.
@@ -40,6 +49,10 @@ class RunLedger {
   /// What all its frames have in common (run_source.h); null when that is not known, as of a run of another version.
   [[nodiscard]] const Json& source() const { return source_; }
   [[nodiscard]] const std::map<LedgerKey, Note>& notes() const { return notes_; }
+  /// In the order in which they began.
+  [[nodiscard]] const std::vector<Task>& tasks() const { return tasks_; }
+  /// Whether report.json is of relook, but not laid out as this version does it.
+  [[nodiscard]] bool has_foreign_report() const { return has_foreign_report_; }
   [[nodiscard]] const Note* find(const LedgerKey& key) const;
   /// Throws InputError.
   [[nodiscard]] Json entry(const Note& note) const;
@@ -47,11 +60,13 @@ class RunLedger {
  private:
   void read_report();
   void read_progress();
+  void take_head(const Json& head);
   void take(std::string_view text, const LineReader& file, std::size_t skipped, bool is_in_report);
 
   std::filesystem::path run_;
-  bool is_run_ = false;
+  bool is_run_ = false, has_foreign_report_ = false;
   Json head_, source_;
+  std::vector<Task> tasks_;
   std::map<LedgerKey, Note> notes_;
   std::unique_ptr<LineReader> report_, progress_;
 };
