@@ -28,8 +28,13 @@ ChangeClass change_class_of(const std::string& name) {
   return ChangeClass::color;
 }
 
-/// The files of the frame that an entry of an earlier command is of.
-void take_files(const Json& kept, StepReport& entry) {
+/// What the entry of a frame that another command has made says of the frame itself.
+void take_over(const Json& kept, StepReport& entry) {
+  entry.has_overlays = kept.at("overlays").get<bool>();
+  if (kept.at("verify_percent").is_number()) entry.verify_percent = kept.at("verify_percent").get<double>();
+  if (const Json& verify = kept.at("verify"); verify.is_object())
+    entry.verify = VerifyResult{verify.at("pixels_compared").get<std::uint64_t>(),
+                                verify.at("pixels_different").get<std::uint64_t>()};
   for (const auto& [name, stamp] : kept.at("files").items())
     entry.files[name] = {stamp.at("hash").get<std::string>(), stamp.at("bytes").get<std::uint64_t>(),
                          stamp.at("modified").get<std::int64_t>()};
@@ -232,11 +237,11 @@ void JournalRun::run_frame(std::uint32_t step, std::size_t frame) {
 void JournalRun::end_numbered(std::uint32_t step) {
   const auto start = std::chrono::steady_clock::now();
   const std::size_t last = plan_.frames_in(step) - 1;
-  StepReport entry = step_so_far_.value_or(new_entry(step, last));
+  const bool is_last_kept = plan_.keeps(step, last);
+  StepReport entry = step_so_far_ && !is_last_kept ? *step_so_far_ : new_entry(step, last);
   step_so_far_.reset();
+  if (is_last_kept) take_over(plan_.kept_entry(step, last), entry);
   entry.is_whole_step = true;
-  entry.place = new_entry(step, last).place;
-  entry.edits_hash = plan_.hashes().after(step);
   entry.counters = Counters();
   entry.seconds = Seconds();
   entry.reasons = {entry.is_drag ? "the selection is released where the last entry put it"
@@ -251,9 +256,8 @@ void JournalRun::end_numbered(std::uint32_t step) {
   entry.change = ChangeClass::color;
   for (std::size_t frame = 0; frame <= last; ++frame) {
     if (!plan_.keeps(step, frame)) continue;
-    const Json kept = plan_.kept_entry(step, frame);
-    entry.change = combined(entry.change, change_class_of(kept.value("class", "")));
-    if (frame == last) take_files(kept, entry);
+    entry.change =
+        combined(entry.change, change_class_of(plan_.kept_entry(step, frame).at("class").get<std::string>()));
   }
   entry.change = combined(entry.change, step_class_);
   step_class_ = ChangeClass::color;
@@ -342,6 +346,9 @@ void JournalRun::print_summary() {
   if (arguments_.verify_percent)
     line += ", verified: " + std::to_string(pixels_different_) + " of " + std::to_string(pixels_compared_) +
             " pixels differ";
+  if (plan_.pixels_different() > 0)
+    line += ", in kept frames " + std::to_string(plan_.pixels_different()) + " pixels differ from full renders";
+  if (clipped_frames_ > 0) line += ", " + std::to_string(clipped_frames_) + " with pixels beyond half's range";
   if (arguments_.report != ReportKind::none)
     line +=
         "; see " + (plan_.folder() / (arguments_.report == ReportKind::html ? "report.html" : kReportName)).string();

@@ -98,7 +98,8 @@ std::vector<RunPlan> plan_runs(const Arguments& arguments, const std::vector<Jou
 }
 
 std::string difference_text(std::uint64_t pixels_different) {
-  return pixels_different == 0 ? "" : ", of which " + std::to_string(pixels_different) + " pixels differ from full renders";
+  return pixels_different == 0 ? ""
+                               : ", of which " + std::to_string(pixels_different) + " pixels differ from full renders";
 }
 
 Json result_json(const Arguments& arguments, const RunPlan& plan) {

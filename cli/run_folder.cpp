@@ -184,7 +184,8 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   for (const RunLedger::Task& task : ledger.tasks()) ranges.emplace_back(task.first_step, task.last_step);
   report.parts.clear();
   std::size_t missing = 0;
-  for (const auto& [first, last] : ranges) missing += progress_->is_being_done(first, last) ? 0 : missing_in(first, last);
+  for (const auto& [first, last] : ranges)
+    missing += progress_->is_being_done(first, last) ? 0 : missing_in(first, last);
   for (const auto& [first, last] : joined(ranges))
     report.parts.push_back(std::to_string(first) + "-" + std::to_string(last));
   report.interrupted = interrupted || missing > 0;

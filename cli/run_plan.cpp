@@ -66,7 +66,8 @@ bool is_frame_stem(const std::string& name) {
   const std::string stem = frame_stem(name);
   const std::size_t step_digits = std::min(stem.find('_'), stem.size());
   const std::string_view rest = std::string_view(name).substr(std::min(stem.size(), name.size()));
-  const bool has_kind = rest == ".exr" || rest == ".png" || rest == "_dependent.png" || rest == "_touched.png" || rest == "_groups.png";
+  const bool has_kind =
+      rest == ".exr" || rest == ".png" || rest == "_dependent.png" || rest == "_touched.png" || rest == "_groups.png";
   return has_kind && step_digits >= 4 && step_digits <= 9 && std::ranges::count(stem, '_') <= 1;
 }
 
@@ -170,8 +171,8 @@ const std::string* RunPlan::expected_edits(const LedgerKey& key) const {
 std::optional<std::string> RunPlan::other_journal() const {
   for (const RunLedger::Task& task : ledger_->tasks())
     if (task.last_step > journal_.steps.size() || hashes_.after(task.last_step) != task.edits)
-      return "frames of another journal (a command is, or was, at its steps " + std::to_string(task.first_step) + " to " +
-             std::to_string(task.last_step) + ")";
+      return "frames of another journal (a command is, or was, at its steps " + std::to_string(task.first_step) +
+             " to " + std::to_string(task.last_step) + ")";
   for (const auto& [key, note] : ledger_->notes()) {
     if (is_of_journal(key, note)) continue;
     const std::string* expected = expected_edits(key);
@@ -225,7 +226,8 @@ bool RunPlan::is_kept(const RunLedger::Note& note, const Json& entry) const {
 void RunPlan::require_free(const std::string& name) const {
   const std::filesystem::path path = folder_ / name;
   std::error_code error;
-  if (!is_there(path) || (std::filesystem::is_regular_file(path, error) && std::filesystem::is_empty(path, error))) return;
+  if (!is_there(path) || (std::filesystem::is_regular_file(path, error) && std::filesystem::is_empty(path, error)))
+    return;
   const auto part = std::ranges::find(kParts, name.substr(0, name.find('/')), &RunPart::folder);
   if (!is_own_file(path, part->kind))
     throw UsageError(path.string(), "is where a file of the run is to go, and not of relook: not replaced");
@@ -362,12 +364,14 @@ void RunPlan::remove_replaced() const {
     if (part.folder == "pixels" && !replaces_all_) continue;  // the page sees to its own
     const std::filesystem::path folder = folder_ / part.folder;
     for (const std::filesystem::path& file : entries_of(folder)) {
-      const std::string unfinished = unfinished_name(file), name = unfinished.empty() ? file.filename().string() : unfinished;
+      const std::string unfinished = unfinished_name(file),
+                        name = unfinished.empty() ? file.filename().string() : unfinished;
       if (!replaces_all_ && (!is_frame_stem(name) || stems.contains(frame_stem(name)))) continue;
       if (!unfinished.empty() || is_own_file(file, part.kind)) remove_file(file);
     }
     std::error_code not_empty;
-    const bool is_folder = std::filesystem::symlink_status(folder, not_empty).type() == std::filesystem::file_type::directory;
+    const bool is_folder =
+        std::filesystem::symlink_status(folder, not_empty).type() == std::filesystem::file_type::directory;
     if (is_folder) std::filesystem::remove(folder, not_empty);
   }
   for (const std::string_view name : {kReportName, std::string_view("report.html")})
@@ -384,7 +388,8 @@ void RunPlan::remove_leftovers() const {
   for (const RunPart& part : kParts)
     for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) {
       const std::string name = unfinished_name(file);
-      const bool is_ours = part.folder != "pixels" && is_frame_stem(name) && step_of(name) >= first_ && step_of(name) <= last_;
+      const bool is_ours =
+          part.folder != "pixels" && is_frame_stem(name) && step_of(name) >= first_ && step_of(name) <= last_;
       if (is_ours) remove_file(file);
     }
   for (const std::filesystem::path& file : entries_of(folder_))

@@ -111,6 +111,7 @@ TEST_F(Outputs, never_name_an_input_in_any_spelling_even_with_overwrite) {
       {{"preprocess", scene_, "--look", patch, "--resolution", "8x8"},
        {"-o", "--trace"},
        {scene_, at("scene/spheres.bin"), patch}},
+      {{"inspect", scene_}, {"--trace"}, {scene_, at("scene/spheres.bin")}},
       {{"replay", cache, journal, "--scene", scene_},
        {"-o", "--trace", "--access-log"},
        {journal, scene_, at("paint.png"), cache, at("c/MANIFEST.json"), at("c/look.json")}},
@@ -122,7 +123,9 @@ TEST_F(Outputs, never_name_an_input_in_any_spelling_even_with_overwrite) {
       {{"inspect", journal, "--scene", scene_}, {"--trace"}, {journal, scene_}},
       {{"check", cache}, {"--trace"}, {at("c/MANIFEST.json")}},
       {{"tune", at("log")}, {"--trace"}, {at("log")}},
-      {{"blame", at("run"), "3,3"}, {"--trace"}, {at("run/report.json"), at("run/frames/0001.exr")}},
+      {{"blame", at("run"), "3,3"},
+       {"--trace"},
+       {at("run/report.json"), at("run/frames/0001.exr"), journal, at("c/look.json")}},
       {{"journal", "wedge", scene_, "/lights/Lamp/intensity", "1", "2"}, {"-o", "--trace"}, {scene_}},
       {{"journal", "diff", scene_, scene_}, {"-o"}, {scene_, at("scene/spheres.bin")}}};
   for (const Case& entry : cases)

@@ -354,6 +354,148 @@ TEST_F(RunFolderTest, a_hundredth_value_renames_the_frames_of_its_wedge) {
   expect_same_run("run", "whole");
 }
 
+TEST_F(RunFolderTest, a_painting_where_an_overlay_is_to_go_is_refused) {
+  ASSERT_EQ(replay("run", {"--steps", "0-2"}).exit_code, 0);
+  write_text("run/overlays/0003_groups.png", "painting");
+  expect_refused("run", {"0003_groups.png"}, [&] { return replay("run", {"--overlays"}); });
+}
+
+TEST_F(RunFolderTest, a_command_at_other_steps_of_another_journal_is_seen_before_it_has_a_frame) {
+  ASSERT_EQ(replay("run", {"--steps", "0-1"}).exit_code, 0);
+  std::vector<Json> steps = steps_of_journal();
+  steps[2] = color_step("another", 0.6);
+  write_journal("other.json", steps);
+  // As a command leaves it that has been killed as it began.
+  const ProgramResult killed =
+      run_program({"env", std::string("LD_PRELOAD=") + RELOOK_FAULT_SHIM, "RELOOK_FAULT=4:kill", RELOOK_PROGRAM,
+                   "replay", at("c"), at("other.json"), "-o", at("run"), "--steps", "4-5"});
+  ASSERT_EQ(killed.exit_code, 128 + 9) << killed.output;
+  ASSERT_TRUE(fs::exists(at("run/progress.jsonl")));
+  ASSERT_GT(fs::file_size(at("run/progress.jsonl")), 0U);
+  expect_refused("run", {"another journal", "4 to 5"}, [&] { return replay("run"); });
+  EXPECT_EQ(replay("run", {"--steps", "4-5"}, "other.json").exit_code, 0) << "its own goes on";
+}
+
+TEST_F(RunFolderTest, nothing_of_a_replaced_run_comes_back) {
+  ASSERT_EQ(replay("run", {"--report", "none"}).exit_code, 0);
+  fs::remove_all(at("c"));
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "64x36", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(replay("run", {"--steps", "0-1", "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(report("run")["frames"].size(), 2U);
+  EXPECT_EQ(pictures("run").size(), 4U);
+  ASSERT_EQ(replay("run").exit_code, 0);
+  ASSERT_EQ(replay("whole").exit_code, 0);
+  expect_same_run("run", "whole");
+}
+
+TEST_F(RunFolderTest, a_frame_that_is_gone_is_in_no_report) {
+  ASSERT_EQ(replay("run").exit_code, 0);
+  fs::remove(at("run/frames/0003.exr"));
+  ASSERT_EQ(replay("run", {"--steps", "0-1", "--fresh"}).exit_code, 0);
+  EXPECT_FALSE(report("run")["frames"].contains("frames/0003.exr"));
+  EXPECT_EQ(report("run")["interrupted"], true) << "it was asked for";
+  ASSERT_EQ(replay("run").exit_code, 0);
+  EXPECT_EQ(report("run")["resumed"]["frames"], 9);
+}
+
+TEST_F(RunFolderTest, a_part_that_replaces_replaces_all_that_is_another_and_nothing_else) {
+  ASSERT_EQ(replay("run").exit_code, 0);
+  std::vector<Json> steps = steps_of_journal();
+  steps[1] = color_step("another", 0.6);
+  write_journal("other.json", steps);
+  fs::copy_file(at("run/frames/0001.exr"), at("run/frames/9_mine.exr"));
+  ASSERT_EQ(replay("run", {"--steps", "2-2", "--overwrite"}, "other.json").exit_code, 0);
+  EXPECT_EQ(report("run")["frames"].size(), 3U);
+  EXPECT_TRUE(fs::exists(at("run/frames/9_mine.exr"))) << "no name of a run's frame";
+  EXPECT_FALSE(fs::exists(at("run/frames/0003.exr")) || fs::exists(at("run/frames/0002_01.exr")));
+  EXPECT_EQ(report("run")["interrupted"], false);
+}
+
+TEST_F(RunFolderTest, a_link_in_place_of_a_part_stays) {
+  ASSERT_EQ(replay("run").exit_code, 0);
+  fs::rename(at("run/frames"), at("elsewhere"));
+  write_text("elsewhere/.DS_Store", "finder");
+  fs::create_directory_symlink(at("elsewhere"), at("run/frames"));
+  ASSERT_EQ(replay("run", {"--float", "--overwrite"}).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(at("run/frames")));
+  EXPECT_TRUE(fs::exists(at("elsewhere/0005.exr")) && fs::exists(at("elsewhere/.DS_Store")));
+}
+
+TEST_F(RunFolderTest, a_report_that_was_laid_out_anew_is_refused_and_replaced_on_demand) {
+  ASSERT_EQ(replay("run", {"--steps", "0-2"}).exit_code, 0);
+  ASSERT_EQ(replay("run", {"--steps", "3", "--report", "none"}).exit_code, 0);
+  const std::string text = report("run").dump(1);
+  std::ofstream(at("run/report.json")) << text;
+  expect_refused("run", {"report.json"}, [&] { return replay("run"); });
+  ASSERT_EQ(replay("run", {"--overwrite"}).exit_code, 0);
+  ASSERT_EQ(replay("whole").exit_code, 0);
+  expect_same_run("run", "whole");
+}
+
+TEST_F(RunFolderTest, entries_that_make_no_sense_count_as_none) {
+  ASSERT_EQ(replay("run").exit_code, 0);
+  const std::string whole(text_of(read_file(at("run/report.json"))));
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"\"name\":\"three\"", "\"name\":5"},
+           {"\"frame\":\"frames/0003.exr\"", "\"frame\":\"../../../x.exr\""},
+           {"\"preview\":\"previews/0003.png\"", "\"preview\":\"../x.png\""},
+           {"\"step\":3", "\"step\":1e300"},
+           {"\"command\":\"", "\"commend\":\""},
+           {"\"files\":{\"frames/0003.exr\"", "\"files\":{\"frames/\\u0000.exr\""}}) {
+    std::string text = whole;
+    const std::size_t line = text.find("\"frame\":\"frames/0003.exr\"");
+    const std::size_t begin = text.rfind('\n', line);
+    const std::size_t at_place = text.find(from, begin);
+    ASSERT_NE(at_place, std::string::npos) << from;
+    std::ofstream(at("run/report.json")) << text.replace(at_place, from.size(), to);
+    const ProgramResult result = replay("run");
+    EXPECT_EQ(result.exit_code, 0) << from << " " << result.output;
+    EXPECT_EQ(report("run")["frames"].size(), 10U) << from;
+    EXPECT_EQ(report("run")["frames"], parse_json(whole, "report.json")["frames"]);
+  }
+}
+
+TEST_F(RunFolderTest, a_fresh_run_that_was_ended_goes_on) {
+  ASSERT_EQ(replay("run").exit_code, 0);
+  const ProgramResult killed =
+      run_program({"env", std::string("LD_PRELOAD=") + RELOOK_FAULT_SHIM, "RELOOK_FAULT=60:kill", RELOOK_PROGRAM,
+                   "replay", at("c"), at("j.json"), "-o", at("run"), "--fresh"});
+  ASSERT_EQ(killed.exit_code, 128 + 9) << killed.output;
+  ASSERT_EQ(replay("run", {"--fresh"}).exit_code, 0);
+  EXPECT_GT(report("run")["resumed"]["frames"], 0);
+  EXPECT_LT(report("run")["resumed"]["frames"], 10);
+  ASSERT_EQ(replay("run", {"--fresh"}).exit_code, 0);
+  EXPECT_EQ(report("run")["resumed"]["frames"], 0) << "done: the next one begins anew";
+}
+
+TEST_F(RunFolderTest, a_page_older_than_the_report_is_made_anew) {
+  ASSERT_EQ(replay("run", {"--steps", "0-2"}).exit_code, 0);
+  ASSERT_EQ(replay("run", {"--steps", "3-5", "--report", "json"}).exit_code, 0);
+  const std::string before(text_of(read_file(at("run/report.html"))));
+  ASSERT_EQ(replay("run").exit_code, 0);
+  EXPECT_NE(text_of(read_file(at("run/report.html"))), before);
+}
+
+TEST_F(RunFolderTest, a_wedge_as_a_whole_has_the_files_of_its_last_frame) {
+  ASSERT_EQ(replay("run", {"--overlays", "--verify"}).exit_code, 0);
+  fs::remove(at("run/frames/0004_02.exr"));
+  ASSERT_EQ(replay("run", {"--overlays", "--verify"}).exit_code, 0);
+  for (const Json& entry : report("run")["steps"])
+    for (const auto& [name, stamp] : entry["files"].items())
+      EXPECT_NE(name.find(fs::path(entry["frame"].get<std::string>()).stem().string()), std::string::npos)
+          << entry["frame"] << " " << name;
+}
+
+TEST_F(RunFolderTest, notes_cut_in_their_first_line_are_still_ours) {
+  ASSERT_EQ(replay("run", {"--report", "none"}).exit_code, 0);
+  const std::string notes(text_of(read_file(at("run/progress.jsonl"))));
+  for (const std::size_t bytes : {0, 1, 20, 33, 40, 200}) {
+    fs::remove_all(at("cut"));
+    write_text("cut/progress.jsonl", notes.substr(0, bytes));
+    EXPECT_EQ(replay("cut", {"--steps", "0-1"}).exit_code, 0) << bytes;
+  }
+}
+
 TEST_F(RunFolderTest, memory_does_not_grow_with_steps) {
   std::vector<Json> steps;
   for (int i = 0; i < 1500; ++i) {

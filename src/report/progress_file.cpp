@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -18,6 +19,7 @@ namespace relook {
 namespace {
 
 constexpr std::size_t kHashDigits = 32;
+constexpr off_t kLongestHead = 1 << 16;
 
 /// Locks or unlocks bytes of an open file; false with errno when somebody else has one of them.
 bool set_lock(int descriptor, short kind, std::uint64_t first, std::uint64_t count) {
@@ -64,8 +66,7 @@ ProgressFile::ProgressFile(const std::filesystem::path& run, std::uint32_t first
   for (int tries = 1;; ++tries) {
     descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (descriptor_ < 0) fail_to_write(path_, "create the file", errno);
-    const bool is_locked =
-        set_lock(descriptor_, F_WRLCK, first_step, std::uint64_t{last_step} - first_step + 1);
+    const bool is_locked = set_lock(descriptor_, F_WRLCK, first_step, std::uint64_t{last_step} - first_step + 1);
     const int error = errno;
     const bool is_done = is_locked ? is_current(descriptor_, path_) : !is_held(error);
     if (is_done) return;
@@ -93,13 +94,19 @@ ProgressFile::Turn::~Turn() {
   if (is_ours_) static_cast<void>(set_lock(file_.descriptor_, F_UNLCK, byte_, 1));
 }
 
-/// What a killed command left of a line is ended first.
+/// What a killed command left of a line is ended first; of the first line, which tells what the file is, it is removed.
 void ProgressFile::append_in_turn(std::span<const Json> entries) {
   const off_t size = ::lseek(descriptor_, 0, SEEK_END);
   if (size < 0) fail_to_write(path_, "write", errno);
-  char last = '\n';
-  const bool is_readable = size == 0 || ::pread(descriptor_, &last, 1, size - 1) == 1;
-  std::string lines = is_readable && last == '\n' ? "" : "\n";
+  std::string end(static_cast<std::size_t>(std::min<off_t>(size, kLongestHead)), '\0');
+  const ssize_t read = ::pread(descriptor_, end.data(), end.size(), size - static_cast<off_t>(end.size()));
+  const bool is_cut = read > 0 && end.back() != '\n';
+  const bool is_first = is_cut && size < kLongestHead && end.find('\n') == std::string::npos;
+  if (is_first) {
+    clear();
+    if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail_to_write(path_, "write", errno);
+  }
+  std::string lines = is_cut && !is_first ? "\n" : "";
   for (const Json& entry : entries) {
     const std::string text = json_text(entry);
     lines.append(hash128(bytes_of(text))).append(" ").append(text).append("\n");
@@ -120,14 +127,11 @@ bool ProgressFile::is_being_done(std::uint32_t first_step, std::uint32_t last_st
   return ::fcntl(descriptor_, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
 }
 
-bool ProgressFile::lock_all_steps() {
-  return set_lock(descriptor_, F_WRLCK, 0, kStepBytes) || !is_held(errno);
-}
+bool ProgressFile::lock_all_steps() { return set_lock(descriptor_, F_WRLCK, 0, kStepBytes) || !is_held(errno); }
 
 void ProgressFile::unlock_other_steps() {
   static_cast<void>(set_lock(descriptor_, F_UNLCK, 0, first_step_));
-  static_cast<void>(
-      set_lock(descriptor_, F_UNLCK, std::uint64_t{last_step_} + 1, kStepBytes - last_step_ - 1));
+  static_cast<void>(set_lock(descriptor_, F_UNLCK, std::uint64_t{last_step_} + 1, kStepBytes - last_step_ - 1));
 }
 
 std::uint64_t ProgressFile::size_bytes() const {

@@ -1,7 +1,7 @@
 // RUN/progress.jsonl: what the commands that write a run have finished, appended frame by frame and synced, so that a
 // run that was killed can be taken up again; gone once report.json has all of it and no command is writing any more. A
-// line is the XXH3-128 of its text, a space, and the text: a head where a command begins ({"relook":"progress/2", what it
-// is to do}), and entries as in report.json. A line that was cut short counts as none.
+// line is the XXH3-128 of its text, a space, and the text: a head where a command begins ({"relook":"progress/2", what
+// it is to do}), and entries as in report.json. A line that was cut short counts as none.
 //
 // It is also the lock of the run: a command holds the bytes of its steps (byte k for step k, open file description
 // locks), so that commands with other steps of the same run work side by side, on other hosts, too, and two with the

@@ -23,7 +23,9 @@ void check_entry(const Json& entry) {
   for (const char* key : {"name", "class", "frame", "frame_hash", "preview", "edits", "command"})
     (void)view.at(key).text();
   if (const JsonView verify = view.at("verify"); !verify.value().is_null())
-    (void)verify.at("pixels_different").integer(0, INT64_MAX);
+    (void)(verify.at("pixels_compared").integer(0, INT64_MAX) + verify.at("pixels_different").integer(0, INT64_MAX));
+  if (const JsonView percent = view.at("verify_percent"); !percent.value().is_null()) (void)percent.number(0, 100);
+  (void)view.at("overlays").boolean();
   const JsonView files = view.at("files");
   files.require_object();
   for (const auto& file : files.value().items()) {
@@ -94,12 +96,9 @@ void RunLedger::read_progress() {
 
 Json RunLedger::head_of(const Task& task, const Json& source) {
   // As text in the order of the names: what tells the file comes first.
-  return {{"relook", "progress/2"},
-          {"source", source},
-          {"steps_edits", task.edits},
-          {"steps_first", task.first_step},
-          {"steps_fresh", task.is_fresh},
-          {"steps_last", task.last_step}};
+  return {{"relook", "progress/2"},       {"source", source},
+          {"steps_edits", task.edits},    {"steps_first", task.first_step},
+          {"steps_fresh", task.is_fresh}, {"steps_last", task.last_step}};
 }
 
 void RunLedger::take_head(const Json& head) {
@@ -125,7 +124,8 @@ void RunLedger::take(std::string_view text, const LineReader& file, std::size_t 
     const bool is_fresh = std::ranges::any_of(tasks_, [&](const Task& task) {
       return task.is_fresh && task.first_step <= key.first && key.first <= task.last_step;
     });
-    Note note{entry["edits"].get<std::string>(), is_in_report, is_fresh && !is_in_report, file.offset() + skipped, text.size()};
+    Note note{entry["edits"].get<std::string>(), is_in_report, is_fresh && !is_in_report, file.offset() + skipped,
+              text.size()};
     notes_.insert_or_assign(key, std::move(note));
   } catch (const InputError&) {  // no entry
   }
