@@ -1,5 +1,6 @@
 #include "console.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,8 +13,6 @@
 
 namespace relook {
 namespace {
-
-void print_error(std::string_view text) { std::fwrite(text.data(), 1, text.size(), stderr); }
 
 std::string_view environment(const char* name) {
   const char* value = std::getenv(name);
@@ -54,6 +53,30 @@ Console::Console(const Arguments& arguments, const Interrupt& interrupt)
   is_bar_ = style_ == ProgressStyle::automatic && !logs_json_ && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal();
   if (style_ == ProgressStyle::automatic && !is_bar_) style_ = ProgressStyle::plain;
   if (style_ == ProgressStyle::plain && logs_json_) style_ = ProgressStyle::json;
+}
+
+/// Whether a descriptor takes something without making the program wait for its reader: until a signal has come, that
+/// is waited for; after it, what nobody reads is dropped.
+bool Console::has_room(int descriptor) const {
+  constexpr int kPauseMilliseconds = 100;
+  for (;;) {
+    pollfd asked{descriptor, POLLOUT, 0};
+    if (poll(&asked, 1, interrupt_.has_come() ? 0 : kPauseMilliseconds) > 0) return true;
+    if (interrupt_.has_come()) return false;
+  }
+}
+
+void Console::print(std::string_view text) {
+  if (has_room(STDOUT_FILENO)) output_.print(text);
+}
+
+void Console::print_error(std::string_view text) const {
+  if (has_room(STDERR_FILENO)) std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+void Console::finish() {
+  if (!has_room(STDOUT_FILENO)) return output_.drop();
+  output_.finish();
 }
 
 Progress Console::stage(std::string name) {
@@ -110,7 +133,7 @@ void Console::show_json(const char* key, std::string_view what, int percent) con
 }
 
 void Console::line(std::string_view text) {
-  if (!quiet_ && !json_) output_.print(std::string(text) + "\n");
+  if (!quiet_ && !json_) print(std::string(text) + "\n");
 }
 
 void Console::log_line(std::string_view text) {
@@ -121,11 +144,11 @@ void Console::log_line(std::string_view text) {
   else if (json_ || StandardOutput::is_pipe())
     print_error(std::string(text) + "\n");
   else
-    output_.print(std::string(text) + "\n");
+    print(std::string(text) + "\n");
 }
 
 void Console::json(const Json& result) {
-  if (json_) output_.print(json_text(result, 2) + "\n");
+  if (json_) print(json_text(result, 2) + "\n");
 }
 
 void Console::warn(const std::vector<std::string>& warnings) {
@@ -184,8 +207,8 @@ void Console::show_whole(double done) {
 void Console::say(std::string_view key, std::string_view value) {
   const std::string line = std::string(key) + ": " + printable(value) + "\n";
   if (json_) return print_error(line);
-  output_.print(line);
-  output_.flush();
+  print(line);
+  if (has_room(STDOUT_FILENO)) output_.flush();
 }
 
 void Console::log(std::string_view level, Json members) const {

@@ -42,9 +42,9 @@ class Console {
   /// The result as JSON; nothing without --json.
   void json(const Json& result);
   /// Text that was asked for as it is, whatever --quiet and --json say.
-  void print(std::string_view text) { output_.print(text); }
+  void print(std::string_view text);
   /// After the work: throws IoError when not all could be written to stdout.
-  void finish() { output_.finish(); }
+  void finish();
   void warn(const std::vector<std::string>& warnings);
   /// The lines on stderr for what ended the program; with --progress openjd the first is also said to the render
   /// manager.
@@ -60,6 +60,8 @@ class Console {
   [[nodiscard]] TraceFile& trace() { return trace_; }
 
  private:
+  [[nodiscard]] bool has_room(int descriptor) const;
+  void print_error(std::string_view text) const;
   void show(const std::string& stage, double done);
   void show_whole(double done);
   void show_json(const char* key, std::string_view what, int percent) const;

@@ -23,6 +23,9 @@ class Interrupt {
   /// Throws Interrupted once a signal has come: unwinds to main, removing temporary files on the way.
   void check() const;
 
+  /// Whether a signal has come, also for work that goes on to its end all the same.
+  [[nodiscard]] bool has_come() const { return signal_.load() != 0; }
+
   /// While it lives nothing is being made that would be lost or left half done: when work does not come to a check()
   /// for a second and a half after a signal (an image that is being decoded, say), the process ends at once.
   class Expendable {

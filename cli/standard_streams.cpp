@@ -1,6 +1,7 @@
 #include "standard_streams.h"
 
 #include <fcntl.h>
+#include <stdio_ext.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -49,6 +50,8 @@ void StandardOutput::finish() {
   flush();
   if (has_failed_) throw IoError("standard output", "cannot be written");
 }
+
+void StandardOutput::drop() { __fpurge(stdout); }
 
 bool StandardOutput::is_pipe() {
   struct stat status {};

@@ -21,6 +21,8 @@ class StandardOutput {
   void flush();
   /// Throws IoError if something could not be written for another reason.
   void finish();
+  /// Forgets what has not been written yet.
+  void drop();
   [[nodiscard]] static bool is_pipe();  // or a socket
 
  private:

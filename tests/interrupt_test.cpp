@@ -1,5 +1,6 @@
 // Signals that ask the program to end, schedulers' notices included: whatever it is doing, it ends soon, says so in its
 // exit code, leaves no temporary files, and the same command goes on from there.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -162,6 +163,29 @@ TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
   for (const auto& entry : fs::recursive_directory_iterator(at("run"))) {
     EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path();
   }
+}
+
+TEST_F(Interruption, a_reader_that_has_stopped_reading_does_not_keep_a_run_from_ending) {
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "32x18", "--quiet"}).exit_code, 0);
+  int ends[2];
+  ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
+  ASSERT_GE(fcntl(ends[1], F_SETPIPE_SZ, 4096), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    dup2(ends[1], STDOUT_FILENO);
+    dup2(ends[1], STDERR_FILENO);
+    execl(RELOOK_PROGRAM, RELOOK_PROGRAM, "replay", at("c").c_str(), at("j.json").c_str(), "-o", at("run").c_str(),
+          nullptr);
+    _exit(127);
+  }
+  wait_for("run/frames/0001.exr");
+  std::this_thread::sleep_for(1500ms);  // by now nothing more goes into the pipe
+  EXPECT_FALSE(fs::exists(at("run/frames/0003_150.exr"))) << "the run waits for its reader";
+  kill(child, SIGTERM);
+  EXPECT_EQ(end_of(child), 128 + SIGTERM);
+  EXPECT_EQ(report("run")["interrupted"], true);
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST_F(Interruption, a_limit_on_the_size_of_files_is_a_line_and_not_death) {

@@ -68,7 +68,14 @@ class Sheet {
     this.cards[this.marked]?.setAttribute("aria-current", "false");
     this.marked = entry;
     this.cards[entry]?.setAttribute("aria-current", "true");
+    this.keepInView(entry, Sheet.settlingFrames);
+  }
+
+  /** Cards that come into view for the first time get their real sizes, which moves those below. */
+  keepInView(entry, frames) {
+    if (entry !== this.marked) return;
     this.cards[entry]?.scrollIntoView({ block: "nearest" });
+    if (frames > 0) requestAnimationFrame(() => this.keepInView(entry, frames - 1));
   }
 
   /** The entry some cards on, among those that the filters leave. */
@@ -86,3 +93,4 @@ class Sheet {
 }
 Sheet.first = 100;  // cards that the page opens with
 Sheet.more = 250;
+Sheet.settlingFrames = 12;
