@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "cache/residency.h"
 #include "engine/sampling.h"
 #include "trace/probe.h"
-
-#include "base/parallel.h"
 
 namespace relook {
 namespace {
@@ -18,7 +17,6 @@ class TileUpdater {
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
-        has_hits_(has_hits(trees_)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
         shader_(tools.shader),
         block_(tools.block) {
@@ -46,12 +44,12 @@ class TileUpdater {
     const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr, task);
     // Where the last tree has changed, this one probably has, too: no use in asking first.
     if (!update && touches != nullptr)
-      update = stored.hits == nullptr || last_changed_.test(leaf) || probe(*touches, primary, stored);
+      update = !stored.hits || last_changed_.test(leaf) || probe(*touches, primary, stored);
     if (!update && (task & kShade) == 0) return;
     const TreeBlock::Mark mark = block_.mark();
     bool changed = false;
     std::uint32_t root = 0;
-    if (update && stored.hits == nullptr) {
+    if (update && !stored.hits) {
       root = trace(primary, sample);
       changed = true;
     } else if (update) {
@@ -72,19 +70,18 @@ class TileUpdater {
   }
 
   /// Hits that are not kept are found first where the tree may be compared with the scene. After a change of the
-  /// objects that it names they cannot be: it is traced anew (null). What a drag shows on top leaves all trees valid.
+  /// objects that it names they cannot be: it is traced anew (none). What a drag shows on top leaves all trees valid.
   StoredTree stored_tree(PathId path, const SpawnedRay& primary, std::uint32_t sample, bool may_update,
                          std::uint8_t task) {
     const PathCursor cursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits});
-    if (has_hits_) return {cursor, trees_.hits_of(sample).data()};
-    if (!may_update || (p_.keeps_trees && (task & kUpdateTree) != 0)) return {cursor, nullptr};
+    if (has_hits(trees_)) return {cursor, trees_.hits_of(sample)};
+    if (!may_update || (p_.keeps_trees && (task & kUpdateTree) != 0)) return {cursor, std::nullopt};
     found_.clear();
     words_.clear();
     found_hits_.clear();
-    const std::uint32_t root = expand_tree(p_.grow, primary, sample, {cursor, nullptr}, found_, result_.counters);
+    const std::uint32_t root = expand_tree(p_.grow, primary, sample, {cursor, std::nullopt}, found_, result_.counters);
     pack(found_, root, p_.grow.layout(), words_, found_hits_);
-    found_hits_.emplace_back();  // never empty
-    return {cursor, found_hits_.data()};
+    return {cursor, found_hits_};
   }
   std::uint32_t trace(const SpawnedRay& primary, std::uint32_t sample) {
     traced_.clear();
@@ -121,7 +118,7 @@ class TileUpdater {
   const UpdatePass& p_;
   const TileTrees& trees_;
   TileRect rect_;
-  bool has_hits_, tests_all_ = false;
+  bool tests_all_ = false;
   PrimaryRays primaries_;
   Shader& shader_;
   std::array<const LeafTouches*, kLeaves> by_leaf_{};

@@ -16,16 +16,16 @@ namespace {
 class Expander {
  public:
   Expander(const GrowScene& grow, std::uint32_t sample, StoredTree stored, TreeBlock& block, GrowCounters& counters)
-      : grower_(grow, sample, block), stored_(stored), counters_(counters) {}
+      : grower_(grow, sample, block), stored_(stored), is_kept_(stored.hits.has_value()), counters_(counters) {}
 
   std::uint32_t expand(const SpawnedRay& ray, std::uint32_t parent) {
     const std::uint32_t index = grower_.append(ray, parent);
-    const Hit* hits = nullptr;
+    std::span<const Hit> hits;
     const PathNode node = take(stored_, hits);
     if (node.is_miss()) return index;
-    grower_.set_hit(index, node.object(), hits != nullptr ? *hits : find_hit(node.object(), ray));
+    grower_.set_hit(index, node.object(), is_kept_ ? hits.front() : find_hit(node.object(), ray));
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
-    FilterReader filters(hits + (hits != nullptr ? 1 : 0));
+    FilterReader filters(is_kept_ ? hits.subspan(1) : hits);
     ShadowSegment segment;
     for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
       const ShadowState state = shadow_state(node.lights, light);
@@ -36,7 +36,7 @@ class Expander {
         grower_.set_blocked(index, light, entry.words);
       } else {
         grower_.gathers(index, light, segment);
-        if (hits != nullptr)
+        if (is_kept_)
           filters.next(entry.objects, grower_.filters_);
         else
           find_filters(entry.objects, segment);
@@ -77,6 +77,7 @@ class Expander {
 
   Grower grower_;
   StoredTree stored_;
+  bool is_kept_;
   GrowCounters& counters_;
   std::vector<Crossing> crossings_;
 };
@@ -102,7 +103,7 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
 
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
                           TreeBlock& block, GrowCounters& counters) {
-  if (stored.hits == nullptr) ++counters.trees_rebuilt;
+  if (!stored.hits) ++counters.trees_rebuilt;
   return Expander(grow, sample, stored, block, counters).expand(primary, kNoNode);
 }
 
