@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
+#include <set>
 
 #include "engine/render.h"
 #include "engine/replay.h"
+#include "random_changes.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
 
@@ -58,7 +61,7 @@ void expect_full_frame(const Replayer& replayer) {
 
 TEST(SkyTiles, AreLeftAloneWhenALightMoves) {
   for (const std::size_t tunnels : {0U, 1U})
-    for (const double ray_trees : {1.0}) {
+    for (const double ray_trees : {1.0, 0.0}) {
       RegionOptions options;
       options.tunnels = tunnels;
       options.ray_trees = ray_trees;
@@ -81,7 +84,7 @@ TEST(SkyTiles, AreLeftAloneWhenALightMoves) {
 
 TEST(SkyTiles, AreLeftAloneWhenAnObjectMovesElsewhere) {
   for (const std::size_t tunnels : {0U, 1U})
-    for (const double ray_trees : {1.0}) {
+    for (const double ray_trees : {1.0, 0.0}) {
       RegionOptions options;
       options.tunnels = tunnels;
       options.ray_trees = ray_trees;
@@ -103,6 +106,104 @@ TEST(SkyTiles, AreLeftAloneWhenAnObjectMovesElsewhere) {
       EXPECT_GT(affected, 0U);
       expect_full_frame(replayer);
     }
+}
+
+/// Rays against single objects that find the old hits of a tree up to where the refracted rays of a material leave
+/// another way.
+std::uint64_t object_rays(const TreeNode& before, const TreeNode& after, const Scene& scene,
+                          const std::string& material) {
+  if (before.missed) return 0;
+  std::uint64_t rays = 1;
+  for (const TreeLight& light : before.lights) {
+    std::set<std::uint32_t> objects;
+    for (const TreeCrossing& filter : light.filters) objects.insert(filter.object);
+    rays += objects.size();
+  }
+  const bool bends = scene.material(scene.objects[before.object].material).name == material;
+  for (const auto& [branch, child] : before.children) {
+    if (bends && branch == Branch::refraction) continue;
+    const auto now =
+        std::ranges::find_if(after.children, [&, b = branch](const auto& pair) { return pair.first == b; });
+    if (now != after.children.end()) rays += object_rays(child, now->second, scene, material);
+  }
+  return rays;
+}
+
+TEST(MissingRayTrees, are_traced_below_the_nodes_of_an_optical_edit_only) {
+  RegionOptions kept, missing;
+  missing.ray_trees = 0;
+  Replayer replayer = replayer_of(spheres_scene(80, 60), kept);
+  Replayer without = replayer_of(spheres_scene(80, 60), missing);
+  for (const double ior : {1.8, 1.2, 1.5}) {
+    const Image before = preprocessed(compiled_again(without.state()).scene(), kView);
+    const Edit edit = replace_edit("/materials/Glass/extensions/KHR_materials_ior/ior", ior);
+    const Counters all = replayer.step(edit, "o", ".").counters, none = without.step(edit, "o", ".").counters;
+    const Scene& scene = without.state().scene();
+    const Image after = preprocessed(scene, kView);
+    std::uint64_t expected = 0, naming = 0;
+    for_each_pair(before, 1, after, 1, [&](const TreeNode& then, const TreeNode& now) {
+      if (!names(then, scene, "GlassBall")) return;
+      ++naming;
+      expected += object_rays(then, now, scene, "Glass");
+    });
+    EXPECT_EQ(all.object_rays, 0U);
+    EXPECT_EQ(none.object_rays, expected);
+    EXPECT_EQ(none.rebuilt.ray_trees, naming);
+    EXPECT_EQ(none.ray_updates, all.ray_updates);
+    EXPECT_EQ(none.shadow_updates, all.shadow_updates);
+    EXPECT_LT(none.ray_updates, size_of(after, 1).rays / 4) << "or nothing would be saved";
+    EXPECT_EQ(without.resident().ray_trees, 0U);
+    expect_full_frame(without);
+  }
+}
+
+void expect_same_work(const StepResult& with, const StepResult& without, std::uint32_t width) {
+  const Counters &a = with.counters, &b = without.counters;
+  EXPECT_EQ(a.ray_updates, b.ray_updates);
+  EXPECT_EQ(a.shadow_updates, b.shadow_updates);
+  EXPECT_EQ(a.ray_tests, b.ray_tests);
+  EXPECT_EQ(a.samples_affected, b.samples_affected);
+  EXPECT_EQ(a.object_rays, 0U);
+  EXPECT_EQ(with.changed_pixels.indices(width), without.changed_pixels.indices(width));
+}
+
+/// Whatever is edited: what is traced against the whole scene does not depend on what is kept.
+TEST(MissingRayTrees, change_no_ray_update_of_any_edit) {
+  constexpr std::size_t kSteps = 40;
+  const std::uint64_t seed = seed_of_run();
+  std::cout << "RELOOK_SEED=" << seed << "\n";
+  std::uint64_t found = 0, traced = 0;
+  for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study})
+    for (const std::uint32_t bits : {0U, 2U}) {
+      Dice dice(seed + 3 * bits + static_cast<std::uint64_t>(scene));
+      RegionOptions options;
+      options.tunnels = dice.below(2);
+      Replayer with = replayer_of(scene, {1, 5, bits}, options);
+      options.ray_trees = 0;
+      Replayer without = replayer_of(scene, {1, 5, bits}, options);
+      const std::uint32_t width = with.image().frame.width;
+      for (std::size_t k = 1; k <= kSteps; ++k) {
+        const bool is_drag = dice.chance(0.2);
+        const Json& look = with.state().document().look;
+        const Change change = is_drag ? random_movement(look, "Ball", dice) : random_change(look, dice);
+        const Edit edit = edit_of_list(change.forward);
+        SCOPED_TRACE(std::string(test_scene_name(scene)) + ", step " + std::to_string(k) + ": " +
+                     Json(change.forward).dump());
+        const auto step = [&](Replayer& r) {
+          return is_drag ? r.drag(edit, "random", ".") : r.step(edit, "random", ".");
+        };
+        const StepResult a = step(with), b = step(without);
+        expect_same_work(a, b, width);
+        if (is_drag) expect_same_work(with.release(), without.release(), width);
+        ASSERT_EQ(different_pixels(with.image().frame, without.image().frame).size(), 0U);
+        expect_full_frame(without);
+        if (HasFailure()) return;
+        found += b.counters.object_rays;
+        traced += b.counters.ray_updates;
+      }
+    }
+  EXPECT_GT(found, 0U);
+  EXPECT_GT(traced, 0U);
 }
 
 }  // namespace
