@@ -183,7 +183,8 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
     if (!kept.tiles[tiles[i]].is_valid) result.counters.evicted.color_trees += samples[i];
   }
   result.counters.color_trees_evaluated = result.counters.samples_affected;
-  if (!found.works.empty()) selection_.keep(change, std::move(found.tasks), result.dependent);
+  if (!found.works.empty())
+    selection_.keep(change, std::move(found.tasks), result.dependent, result.seconds.select + result.seconds.test);
   result.counters.evicted.color_trees += compressed_.trim();
   watch.lap(result.seconds.evaluate);
 }
