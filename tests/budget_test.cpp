@@ -151,7 +151,7 @@ TEST(ObjectRays, find_every_hit_of_every_tree_again) {
         TreeBlock block;
         GrowCounters counters;
         const std::uint32_t root = expand_tree(grow, primaries.ray(rect, sample), sample,
-                                               {PathCursor(path, grow.layout()), nullptr}, block, counters);
+                                               {PathCursor(path, grow.layout()), std::nullopt}, block, counters);
         std::vector<std::uint32_t> words;
         std::vector<Hit> hits;
         pack(block, root, grow.layout(), words, hits);

@@ -141,7 +141,7 @@ std::size_t segments_outside(const Replayer& replayer, const ImageRegions& regio
       GrowCounters counters;
       TreeBlock block;
       const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), layout_of(replayer)),
-                              trees.hits_of(sample).data()};
+                              trees.hits_of(sample)};
       expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
       const std::uint32_t leaf = leaf_of(sample / image.view.samples, rect.x1 - rect.x0);
       if (!is_enclosed_everywhere(scene, block, regions.tunnels(tile), leaf, segments)) ++outside;

@@ -226,7 +226,7 @@ TEST(ShadowCounter, stored_counters_are_those_of_a_loop_over_all_objects) {
     OracleCounts counts;
     for (std::uint32_t sample = 0; sample < sample_count(rect, view); ++sample) {
       const StoredTree stored{PathCursor(image.paths.words(image.trees[0].paths[sample]), grow.layout()),
-                              image.trees[0].hits_of(sample).data()};
+                              image.trees[0].hits_of(sample)};
       GrowCounters counters;
       TreeBlock block;
       expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);

@@ -31,7 +31,7 @@ class TileCompressor {
       const PathId path = trees_.paths[sample];
       if ((p_.tasks.of_path[path.index()] & kShade) == 0) return;
       const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}),
-                              has_hits(trees_) ? trees_.hits_of(sample).data() : nullptr};
+                              trees_.kept_hits_of(sample)};
       roots_.push_back(expand_tree(p_.grow, primaries_.ray(rect_, sample), sample, stored, block_, counters_));
       if (roots_.size() == kBlockSamples) flush();
     });
@@ -183,7 +183,8 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
     if (!kept.tiles[tiles[i]].is_valid) result.counters.evicted.color_trees += samples[i];
   }
   result.counters.color_trees_evaluated = result.counters.samples_affected;
-  if (!found.works.empty()) selection_.keep(change, std::move(found.tasks), result.dependent);
+  if (!found.works.empty())
+    selection_.keep(change, std::move(found.tasks), result.dependent, result.seconds.select + result.seconds.test);
   result.counters.evicted.color_trees += compressed_.trim();
   watch.lap(result.seconds.evaluate);
 }

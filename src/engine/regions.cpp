@@ -37,8 +37,7 @@ class LeafTunnels {
   void add(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
     block_.clear();
-    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()),
-                            has_hits(trees_) ? trees_.hits_of(sample).data() : nullptr};
+    const StoredTree stored{PathCursor(image_.paths.words(path), grow_.layout()), trees_.kept_hits_of(sample)};
     const std::uint32_t root = expand_tree(grow_, primaries_.ray(rect_, sample), sample, stored, block_, counters_);
     enclose(set_.of(class_of_(path)), grow_.scene, block_, root, histories_);
   }

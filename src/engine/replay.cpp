@@ -29,7 +29,7 @@ struct Replayer::Impl {
   StoredImage stored;
   ObjectLevels objects{rays, monitor()};
   ProgramTable programs;
-  KeptSelection selection;
+  KeptSelection selection{stored.samples()};  // a byte a sample
   CompressedEdits compressed;
   Recolorer recolorer{stored, rays, objects, programs, selection, compressed};
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
@@ -142,7 +142,7 @@ struct Replayer::Impl {
     count(updates, works, uses_tunnels, result);
     std::vector<Leaves> leaves;
     for (const TileWork& work : works) leaves.push_back(work.by_path);
-    selection.keep(change, std::move(tasks), std::move(leaves));
+    selection.keep(change, std::move(tasks), std::move(leaves), result.seconds.select + result.seconds.test);
     return updates;
   }
 

@@ -117,7 +117,7 @@ void StoredImage::find_hits(std::size_t tile, const GrowScene& scene, GrowCounte
   for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
     block.clear();
     words.clear();
-    const StoredTree stored{PathCursor(image_.paths.words(trees.paths[sample]), layout()), nullptr};
+    const StoredTree stored{PathCursor(image_.paths.words(trees.paths[sample]), layout()), std::nullopt};
     const std::uint32_t root = expand_tree(scene, primaries.ray(rect, sample), sample, stored, block, counters);
     pack(block, root, layout(), words, hits);
     first_hit.push_back(hit_place(hits.size()));

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "base/parallel.h"
 #include "cache/residency.h"
 #include "engine/sampling.h"
+#include "trace/find_hits.h"
 #include "trace/probe.h"
-
-#include "base/parallel.h"
 
 namespace relook {
 namespace {
@@ -18,10 +18,10 @@ class TileUpdater {
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
-        has_hits_(has_hits(trees_)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
         shader_(tools.shader),
-        block_(tools.block) {
+        block_(tools.block),
+        finder_(pass.grow, pass.change.rays, result_.counters) {
     result_.tile = tile;
   }
 
@@ -43,18 +43,14 @@ class TileUpdater {
     if (task == 0 && touches == nullptr && !tests_all_) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     bool update = (task & kUpdateTree) != 0 || tests_all_;
-    const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr, task);
+    const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr);
     // Where the last tree has changed, this one probably has, too: no use in asking first.
-    if (!update && touches != nullptr)
-      update = stored.hits == nullptr || last_changed_.test(leaf) || probe(*touches, primary, stored);
+    if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(*touches, primary, stored);
     if (!update && (task & kShade) == 0) return;
     const TreeBlock::Mark mark = block_.mark();
     bool changed = false;
     std::uint32_t root = 0;
-    if (update && stored.hits == nullptr) {
-      root = trace(primary, sample);
-      changed = true;
-    } else if (update) {
+    if (update) {
       const Touches* tested = tests_all_ ? nullptr : touches != nullptr ? touches : &no_touches_;
       root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
       last_changed_.set(leaf, changed);
@@ -71,25 +67,15 @@ class TileUpdater {
     if (roots_.size() == chunk_samples(p_.grow.layout().lights)) flush();
   }
 
-  /// Hits that are not kept are found first where the tree may be compared with the scene. After a change of the
-  /// objects that it names they cannot be: it is traced anew (null). What a drag shows on top leaves all trees valid.
-  StoredTree stored_tree(PathId path, const SpawnedRay& primary, std::uint32_t sample, bool may_update,
-                         std::uint8_t task) {
-    const PathCursor cursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits});
-    if (has_hits_) return {cursor, trees_.hits_of(sample).data()};
-    if (!may_update || (p_.keeps_trees && (task & kUpdateTree) != 0)) return {cursor, nullptr};
-    found_.clear();
-    words_.clear();
+  /// Hits that are not kept are found first where the tree may be compared with the scene.
+  StoredTree stored_tree(PathId path, const SpawnedRay& primary, std::uint32_t sample, bool may_update) {
+    StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}),
+                      trees_.kept_hits_of(sample)};
+    if (stored.hits || !may_update) return stored;
     found_hits_.clear();
-    const std::uint32_t root = expand_tree(p_.grow, primary, sample, {cursor, nullptr}, found_, result_.counters);
-    pack(found_, root, p_.grow.layout(), words_, found_hits_);
-    found_hits_.emplace_back();  // never empty
-    return {cursor, found_hits_.data()};
-  }
-  std::uint32_t trace(const SpawnedRay& primary, std::uint32_t sample) {
-    traced_.clear();
-    trace_trees(p_.grow, std::span(&primary, 1), sample, block_, traced_, result_.counters);
-    return traced_.front();
+    finder_.find(primary, stored.cursor, found_hits_);
+    stored.hits = found_hits_;
+    return stored;
   }
 
   /// The tests of a tree that is then updated are counted there.
@@ -121,17 +107,17 @@ class TileUpdater {
   const UpdatePass& p_;
   const TileTrees& trees_;
   TileRect rect_;
-  bool has_hits_, tests_all_ = false;
+  bool tests_all_ = false;
   PrimaryRays primaries_;
   Shader& shader_;
   std::array<const LeafTouches*, kLeaves> by_leaf_{};
   const Touches no_touches_;
   Leaves last_changed_;  // leaves whose last updated tree has changed
   TreeBlock& block_;
-  std::vector<std::uint32_t> roots_, words_, traced_;
-  TreeBlock found_;
-  std::vector<Hit> found_hits_;
+  std::vector<std::uint32_t> roots_, words_;
   TileUpdate result_;
+  HitFinder finder_;
+  std::vector<Hit> found_hits_;
 };
 
 }  // namespace

@@ -1,31 +1,28 @@
 #include "trace/grow.h"
 
-#include <tuple>
-
-#include "base/error.h"
 #include "base/parallel.h"
 #include "trace/grower.h"
+#include "trace/object_rays.h"
 
 namespace relook {
 namespace {
 
-[[noreturn]] void refuse_trees() {
-  throw Error(ExitCode::damaged_cache, "", "", "stored ray trees do not fit the scene; preprocess again");
-}
-
 class Expander {
  public:
   Expander(const GrowScene& grow, std::uint32_t sample, StoredTree stored, TreeBlock& block, GrowCounters& counters)
-      : grower_(grow, sample, block), stored_(stored), counters_(counters) {}
+      : grower_(grow, sample, block),
+        stored_(stored),
+        is_kept_(stored.hits.has_value()),
+        rays_(grow.objects, counters) {}
 
   std::uint32_t expand(const SpawnedRay& ray, std::uint32_t parent) {
     const std::uint32_t index = grower_.append(ray, parent);
-    const Hit* hits = nullptr;
+    std::span<const Hit> hits;
     const PathNode node = take(stored_, hits);
     if (node.is_miss()) return index;
-    grower_.set_hit(index, node.object(), hits != nullptr ? *hits : find_hit(node.object(), ray));
+    grower_.set_hit(index, node.object(), is_kept_ ? hits.front() : rays_.hit(node.object(), ray));
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
-    FilterReader filters(hits + (hits != nullptr ? 1 : 0));
+    FilterReader filters(is_kept_ ? hits.subspan(1) : hits);
     ShadowSegment segment;
     for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
       const ShadowState state = shadow_state(node.lights, light);
@@ -36,7 +33,7 @@ class Expander {
         grower_.set_blocked(index, light, entry.words);
       } else {
         grower_.gathers(index, light, segment);
-        if (hits != nullptr)
+        if (is_kept_)
           filters.next(entry.objects, grower_.filters_);
         else
           find_filters(entry.objects, segment);
@@ -51,34 +48,15 @@ class Expander {
   }
 
  private:
-  Hit find_hit(ObjectId object, const SpawnedRay& ray) {
-    ++counters_.object_rays;
-    const Meeting meeting = Tracer::intersect(grower_.grow().objects->of(object), {ray.origin, ray.direction});
-    if (meeting.object.is_none()) refuse_trees();
-    return meeting.hit;
-  }
-
-  /// The crossings of a filtered segment, object by object, in their order along it.
   void find_filters(std::span<const std::uint32_t> objects, const ShadowSegment& segment) {
-    crossings_.clear();
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (std::ranges::count(objects.first(i), objects[i]) > 0) continue;
-      ++counters_.object_rays;
-      const Ray ray{segment.origin, segment.direction, segment.t_max};
-      if (!Tracer::passes(grower_.grow().objects->of(ObjectId(objects[i])), ray, grower_.crossings_)) refuse_trees();
-      crossings_.insert(crossings_.end(), grower_.crossings_.begin(), grower_.crossings_.end());
-    }
-    std::ranges::sort(crossings_, {}, [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); });
-    if (!std::ranges::equal(crossings_, objects, {}, [](const Crossing& c) { return c.object.index(); }))
-      refuse_trees();
     grower_.filters_.clear();
-    for (const Crossing& crossing : crossings_) grower_.filters_.push_back(filter_of(crossing));
+    for (const Crossing& crossing : rays_.filters(objects, segment)) grower_.filters_.push_back(filter_of(crossing));
   }
 
   Grower grower_;
   StoredTree stored_;
-  GrowCounters& counters_;
-  std::vector<Crossing> crossings_;
+  bool is_kept_;
+  ObjectRays rays_;
 };
 
 }  // namespace
@@ -102,8 +80,10 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
 
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
                           TreeBlock& block, GrowCounters& counters) {
-  if (stored.hits == nullptr) ++counters.trees_rebuilt;
-  return Expander(grow, sample, stored, block, counters).expand(primary, kNoNode);
+  const std::uint64_t rays_before = counters.object_rays;
+  const std::uint32_t root = Expander(grow, sample, stored, block, counters).expand(primary, kNoNode);
+  if (counters.object_rays > rays_before) ++counters.trees_rebuilt;
+  return root;
 }
 
 }  // namespace relook

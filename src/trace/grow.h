@@ -2,6 +2,7 @@
 // what is stored after a change of the scene (paper 2.2): all give the same nodes for the same scene.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,7 +49,7 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
 /// A stored ray tree being walked.
 struct StoredTree {
   PathCursor cursor;
-  const Hit* hits;  // null: not kept
+  std::optional<std::span<const Hit>> hits;  // none: not kept; a tree that meets nothing has an empty span
 };
 
 /// Appends the ray tree of one sample from its path and hits. Hits that are not kept are found again in `grow.objects`
@@ -85,7 +86,7 @@ struct RayChange {
 
 /// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `touches`: the
 /// segments that the selection may meet or may have met; null: any. `changed` is set to true if any node, hit or shadow
-/// state differs from what is stored, or a light that reaches a node has moved.
+/// state differs from what is stored, or a light that reaches a node has moved. Requires: `stored` has its hits.
 std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const Touches* touches,
                           const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
                           GrowCounters& counters, bool& changed);

@@ -177,42 +177,46 @@ class Grower {
   TreeBlock& b_;
 };
 
-/// Reads the filters of a stored node, light by light. `hits`: the first after the node's own.
+/// Reads the filters of a stored node, light by light. `hits`: those after the node's own.
 class FilterReader {
  public:
-  explicit FilterReader(const Hit* hits) : hits_(hits) {}
+  explicit FilterReader(std::span<const Hit> hits) : hits_(hits) {}
   /// Those of the next filtered light, whose objects are `objects`.
   void next(std::span<const std::uint32_t> objects, std::vector<FilterNode>& filters) {
     filters.clear();
     for (const std::uint32_t object : objects) {
       FilterNode filter;
       filter.object = ObjectId(object);
-      filter.hit = *hits_++;
+      filter.hit = hits_[next_++];
       filters.push_back(filter);
     }
   }
 
  private:
-  const Hit* hits_;
+  std::span<const Hit> hits_;
+  std::size_t next_ = 0;
 };
 
-/// Takes the next node and its hits off a stored tree.
-[[nodiscard]] inline PathNode take(StoredTree& stored, const Hit*& hits) {
+/// Takes the next node and its hits off a stored tree: its own, then those of its filters. None, of a hit: not kept.
+[[nodiscard]] inline PathNode take(StoredTree& stored, std::span<const Hit>& hits) {
   const PathNode node = stored.cursor.next();
-  hits = stored.hits;
-  if (!node.is_miss() && hits != nullptr) stored.hits += 1 + node.filter_hits;
+  hits = {};
+  if (node.is_miss() || !stored.hits) return node;
+  const std::size_t count = 1 + node.filter_hits;
+  hits = stored.hits->first(count);
+  stored.hits = stored.hits->subspan(count);
   return node;
 }
 
 inline void skip_children(StoredTree& stored, const PathNode& node) {
   for (unsigned owed = node.children(); owed > 0; --owed) {
-    const Hit* hits = nullptr;
+    std::span<const Hit> hits;
     owed += take(stored, hits).children();
   }
 }
 
 inline void skip_tree(StoredTree& stored) {
-  const Hit* hits = nullptr;
+  std::span<const Hit> hits;
   const PathNode node = take(stored, hits);
   skip_children(stored, node);
 }

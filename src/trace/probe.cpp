@@ -12,7 +12,7 @@ class Prober {
       : g_(grow), change_(change), touches_(touches), stored_(stored), counters_(counters) {}
 
   bool probe(const SpawnedRay& ray, History history) {
-    const Hit* hits = nullptr;
+    std::span<const Hit> hits;
     const PathNode stored = take(stored_, hits);
     const Touch* touch = touch_of(touches_, history);
     if (touch == nullptr) {
@@ -22,7 +22,7 @@ class Prober {
     RayNode node(kNoNode, 0, ray);
     if (!stored.is_miss()) {
       node.object = stored.object();
-      node.hit = *hits;
+      node.hit = hits.front();
       complete(node, g_.scene.object(node.object));
     }
     if (touch->ray && meets(node)) return true;

@@ -7,7 +7,8 @@
 namespace relook {
 
 /// True if the change may alter the tree: then update_tree() says how. Counts the ray tests that it made.
-/// Requires: no node or filter of the path belongs to a changed object, and the lights are as before.
+/// Requires: `stored` has its hits, no node or filter of its path belongs to a changed object, and the lights are as
+/// before.
 [[nodiscard]] bool probe_tree(const GrowScene& grow, const RayChange& change, const Touches& touches,
                               const SpawnedRay& primary, StoredTree stored, GrowCounters& counters);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <new>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -36,6 +37,11 @@ struct TileTrees {
 
   [[nodiscard]] std::span<const Hit> hits_of(std::size_t sample) const {
     return {hits.data() + first_hit[sample], first_hit[sample + 1] - first_hit[sample]};
+  }
+  /// The same where they are kept, be they none at all (a sample that sees no object); without a value where not.
+  [[nodiscard]] std::optional<std::span<const Hit>> kept_hits_of(std::size_t sample) const {
+    if (first_hit.empty()) return std::nullopt;
+    return hits_of(sample);
   }
 };
 

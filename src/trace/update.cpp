@@ -15,7 +15,7 @@ class Updater {
       : grower_(grow, sample, block), change_(change), touches_(touches), stored_(stored), counters_(counters) {}
 
   std::uint32_t update(const SpawnedRay& ray, std::uint32_t parent, History history) {
-    const Hit* hits = nullptr;
+    std::span<const Hit> hits;
     const PathNode node = take(stored_, hits);
     if (!node.is_miss() && (change_.flags(node.object()) & RayChange::moved) != 0) {
       // The selection is removed: what lies behind it shows (paper 2.2).
@@ -24,7 +24,7 @@ class Updater {
       return trace(ray, parent);
     }
     const std::uint32_t index = grower_.append(ray, parent);
-    if (!node.is_miss()) grower_.set_hit(index, node.object(), *hits);
+    if (!node.is_miss()) grower_.set_hit(index, node.object(), hits.front());
     const Touch touch = may_touch(history);
     if (touch.ray && !change_.moved_after.empty() && test(index, node)) return index;
     if (node.is_miss()) return index;
@@ -88,10 +88,10 @@ class Updater {
     return true;
   }
 
-  void update_lights(std::uint32_t index, const PathNode& node, const Hit* hits, const Touch& touch) {
+  void update_lights(std::uint32_t index, const PathNode& node, std::span<const Hit> hits, const Touch& touch) {
     // What is stored by old light, since lights may have changed places.
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
-    FilterReader filters(hits + 1);
+    FilterReader filters(hits.subspan(1));
     stored_filters_.resize(change_.old_lights.size());
     stored_entries_.resize(change_.old_lights.size());
     for (std::size_t old = 0; old < change_.old_lights.size(); ++old) {

@@ -33,7 +33,7 @@ TreeBlock block;
   for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
     const TileTrees& trees = image.trees[tile];
     const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), grow.layout()),
-                            trees.hits_of(sample).data()};
+                            trees.hits_of(sample)};
     block.clear();
     expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
     for (const RayNode& node : block.nodes) {

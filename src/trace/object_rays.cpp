@@ -1,0 +1,35 @@
+#include "trace/object_rays.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "base/error.h"
+
+namespace relook {
+
+void refuse_trees() {
+  throw Error(ExitCode::damaged_cache, "", "", "stored ray trees do not fit the scene; preprocess again");
+}
+
+Hit ObjectRays::hit(ObjectId object, const SpawnedRay& ray) {
+  ++counters_.object_rays;
+  const Meeting meeting = Tracer::intersect(objects_->of(object), {ray.origin, ray.direction});
+  if (meeting.object.is_none()) refuse_trees();
+  return meeting.hit;
+}
+
+const std::vector<Crossing>& ObjectRays::filters(std::span<const std::uint32_t> objects, const ShadowSegment& segment) {
+  crossings_.clear();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (std::ranges::count(objects.first(i), objects[i]) > 0) continue;
+    ++counters_.object_rays;
+    const Ray ray{segment.origin, segment.direction, segment.t_max};
+    if (!Tracer::passes(objects_->of(ObjectId(objects[i])), ray, of_object_)) refuse_trees();
+    crossings_.insert(crossings_.end(), of_object_.begin(), of_object_.end());
+  }
+  std::ranges::sort(crossings_, {}, [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); });
+  if (!std::ranges::equal(crossings_, objects, {}, [](const Crossing& c) { return c.object.index(); })) refuse_trees();
+  return crossings_;
+}
+
+}  // namespace relook
