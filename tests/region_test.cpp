@@ -156,7 +156,10 @@ TEST(Finding, TheSameSelectionIsNotLookedForTwice) {
   };
   EXPECT_GT(bend("1.4").counters.by_groups.visited, 0U);
   EXPECT_EQ(bend("1.6").counters.by_groups.visited, 0U);
-  EXPECT_GT(paint("[0.5, 0.5, 0.1, 1]").counters.by_groups.visited, 0U);
+  const StepResult third = paint("[0.5, 0.5, 0.1, 1]");
+  EXPECT_EQ(third.counters.by_groups.visited, 0U) << "nor after an edit of something else";
+  for (std::size_t tile = 0; tile < third.dependent.size(); ++tile)
+    EXPECT_EQ(third.dependent[tile] | first.dependent[tile], third.dependent[tile]) << "none is forgotten";
 }
 
 TEST(Finding, TunnelsLeaveFewTests) {
