@@ -228,7 +228,8 @@ void Residency::claim(std::int64_t bytes) {
   if (!options_.process_bytes) return;
   const std::lock_guard lock(mutex_);
   claimed_bytes_ += bytes;
-  if (claimed_bytes_ <= 0) return;
+  // What is given back makes no room: its owner may be going, with whatever else could leave.
+  if (bytes <= 0 || claimed_bytes_ <= 0) return;
   outside_bytes_ = std::max(outside_bytes_, base_bytes_ + static_cast<std::uint64_t>(claimed_bytes_) + reserve_bytes_);
   make_room_locked(0);
 }

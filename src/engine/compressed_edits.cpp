@@ -43,7 +43,7 @@ const ParameterSet* CompressedEdits::set_for(const ParameterSet& changed) const 
 CompressedImage& CompressedEdits::of(const ParameterSet& parameters, std::uint64_t change) {
   auto found = std::ranges::find_if(images_, [&](const auto& image) { return image->parameters == parameters; });
   if (found == images_.end()) {
-    images_.push_back(std::make_unique<CompressedImage>(parameters, tile_count_, sets_++));
+    images_.push_back(std::make_shared<CompressedImage>(parameters, tile_count_, sets_++));
     found = std::prev(images_.end());
   }
   (*found)->last_change = change_ = change;
@@ -88,13 +88,17 @@ void CompressedEdits::clear() {
 void CompressedEdits::list_victims(EvictionPolicy policy, std::uint64_t change, std::vector<Victim>& victims) {
   for (const auto& image : images_) {
     if (image.get() == at_work_) continue;
-    for (CompressedTile& tile : image->tiles)
-      if (!tile.samples.empty())
-        victims.push_back({weight(policy, *image, tile, change), [this, &tile] {
-                             const std::uint64_t samples = tile.samples.size();
-                             drop(tile);
-                             return samples;
-                           }});
+    for (CompressedTile& tile : image->tiles) {
+      if (tile.samples.empty()) continue;
+      const auto leave = [this, &tile, still = std::weak_ptr(image)] {
+        const std::shared_ptr<CompressedImage> owner = still.lock();
+        if (!owner || owner.get() == at_work_) return std::uint64_t{0};
+        const std::uint64_t samples = tile.samples.size();
+        drop(tile);
+        return samples;
+      };
+      victims.push_back({weight(policy, *image, tile, change), leave});
+    }
   }
 }
 

@@ -66,7 +66,8 @@ class CompressedEdits {
   /// trees dropped.
   std::uint64_t trim();
 
-  /// What could leave memory at once: not what of() gave and trim() has not taken back.
+  /// What could leave memory at once: not what of() gave and trim() has not taken back. What has gone, or is given, in
+  /// the meantime does not leave when its turn comes.
   void list_victims(EvictionPolicy policy, std::uint64_t change, std::vector<Victim>& victims);
 
   [[nodiscard]] std::uint64_t bytes() const { return bytes_; }
@@ -79,7 +80,7 @@ class CompressedEdits {
   std::uint64_t most_samples_, change_ = 0;
   std::size_t sets_ = 0;  // so far
   std::atomic<std::uint64_t> bytes_ = 0;
-  std::vector<std::unique_ptr<CompressedImage>> images_;
+  std::vector<std::shared_ptr<CompressedImage>> images_;
   std::optional<std::vector<ParameterSet>> chosen_;  // none: any set may be kept
   const CompressedImage* at_work_ = nullptr;
 };
