@@ -51,12 +51,6 @@ StepRanges joined(StepRanges ranges) {
   return result;
 }
 
-/// Whether the frame of an entry is there.
-bool has_frame(const std::filesystem::path& run, const Json& entry) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(run / entry.at("frame").get<std::string>(), error);
-}
-
 }  // namespace
 
 RunFolder::RunFolder(RunPlan& plan, const Journal& journal, Style style)
@@ -168,7 +162,9 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   std::vector<std::pair<LedgerKey, RunLedger::Note>> notes;  // with their frames
   std::vector<std::size_t> frames_there(journal_.steps.size() + 1);
   for (const auto& [key, note] : ledger.notes()) {
-    if (!plan_.is_of_journal(key, note) || !has_frame(path_, ledger.entry(note))) continue;
+    std::error_code error;
+    if (!plan_.is_of_journal(key, note)) continue;
+    if (!std::filesystem::is_regular_file(path_ / plan_.frame_name_of(key), error)) continue;
     notes.emplace_back(key, note);
     if (plan_.is_frame(key)) ++frames_there[key.first];
   }

@@ -49,6 +49,8 @@ class RunPlan {
   void remove_unfinished_page() const;
 
   [[nodiscard]] std::size_t frames_in(std::uint32_t step) const;
+  /// Of a drag or wedge as a whole: of its last frame. Requires: an entry of this journal.
+  [[nodiscard]] std::string frame_name_of(const LedgerKey& key) const;
   [[nodiscard]] LedgerKey key_of(std::uint32_t step, std::size_t frame) const;
   /// Whether an entry is of this journal, and whether it has a frame of its own: not one of a drag or wedge as a whole.
   [[nodiscard]] bool is_of_journal(const LedgerKey& key, const RunLedger::Note& note) const;
@@ -68,7 +70,6 @@ class RunPlan {
   void require_free(const std::string& name) const;
   [[nodiscard]] std::vector<Json> entries_to_stay() const;
   [[nodiscard]] bool has_other_names() const;
-  [[nodiscard]] std::string frame_name_of(const LedgerKey& key) const;
   void remove_replaced() const;
   void remove_leftovers() const;
 

@@ -11,7 +11,7 @@ relook=build/release/relook
 out=build/demo
 rm -rf "$out"
 mkdir -p "$out"
-"$relook" preprocess scenes/spheres/spheres.gltf -o "$out/spheres.cache" --resolution 960x540 --samples 4 --overwrite
+"$relook" preprocess scenes/spheres/spheres.gltf -o "$out/spheres.cache" --resolution 960x540 --samples 4
 "$relook" replay "$out/spheres.cache" journals/table1.json -o "$out/table1" --baseline --overlays
 
 echo

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -37,6 +36,13 @@ bool set_lock(int descriptor, short kind, std::uint64_t first, std::uint64_t cou
 
 /// Whether a lock was refused because somebody has it, not because the file system has none.
 bool is_held(int error) { return error == EAGAIN || error == EACCES; }
+
+/// Whether a file that ends within a line, which may be its first, has no other.
+bool has_one_line(int descriptor, off_t size) {
+  if (size >= kLongestHead) return false;
+  std::string text(static_cast<std::size_t>(size), '\0');
+  return ::pread(descriptor, text.data(), text.size(), 0) == size && text.find('\n') == std::string::npos;
+}
 
 /// Whether the open file is still the one under its name.
 bool is_current(int descriptor, const std::filesystem::path& path) {
@@ -98,10 +104,9 @@ ProgressFile::Turn::~Turn() {
 void ProgressFile::append_in_turn(std::span<const Json> entries) {
   const off_t size = ::lseek(descriptor_, 0, SEEK_END);
   if (size < 0) fail_to_write(path_, "write", errno);
-  std::string end(static_cast<std::size_t>(std::min<off_t>(size, kLongestHead)), '\0');
-  const ssize_t read = ::pread(descriptor_, end.data(), end.size(), size - static_cast<off_t>(end.size()));
-  const bool is_cut = read > 0 && end.back() != '\n';
-  const bool is_first = is_cut && size < kLongestHead && end.find('\n') == std::string::npos;
+  char last = '\n';
+  const bool is_cut = size > 0 && ::pread(descriptor_, &last, 1, size - 1) == 1 && last != '\n';
+  const bool is_first = is_cut && has_one_line(descriptor_, size);
   if (is_first) {
     clear();
     if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail_to_write(path_, "write", errno);
