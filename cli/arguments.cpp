@@ -75,12 +75,19 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
                   "Percentage of the samples whose ray trees are kept, not just their paths");
   verb.add_option("--color-trees", raw.color_trees,
                   "Percentage of the samples whose colour trees are kept between steps");
-  verb.add_option("--tunnels", structures.tunnels,
-                  "Replay: most tunnels of a region, the last for all further paths; 0: none")
+  const bool is_replay = verb.get_name() == "replay";
+  TunnelArguments& tunnels = arguments.tunnels;
+  verb.add_option("--tunnels", tunnels.tunnels,
+                  is_replay ? "Most tunnels of a region, the last for all further paths; 0: none; the cache's, or 1"
+                            : "Most tunnels of a region to store, the last for all further paths; 0: none; 1")
       ->check(CLI::Range(0, 16));
+  verb.add_option("--tunnel-levels", tunnels.levels,
+                  "The lowest levels of the image's quadtree without tunnels; 2: squares of four pixels have some")
+      ->check(CLI::Range(std::uint32_t{0}, kTileLevel));
+  verb.add_option("--most-tunnels", tunnels.most, "Most tunnels in all: the lowest levels go first; without: no limit");
   verb.add_option("--groups", structures.groups, "Replay: most paths of a group; 0: none")->check(CLI::Range(0, 64));
-  verb.add_option("--atoms", structures.atoms,
-                  "Replay: depth of the node hierarchy at which nodes count as one object for groups; 0: none")
+  verb.add_option("--atoms", tunnels.atoms,
+                  "Depth of the node hierarchy at which nodes count as one object for groups and tunnels; 0: none")
       ->check(CLI::Range(0, 64));
   verb.add_option("--shadow-bits", arguments.shadow_bits, "Bits of a shadow counter, fixed by preprocess; 0: a flag")
       ->check(CLI::Range(0, 4));
@@ -262,6 +269,7 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
                      : raw.report == "json" ? ReportKind::json
                                             : ReportKind::html;
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
+  take_tunnels({}, arguments);
   arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
@@ -341,6 +349,15 @@ std::vector<std::string> marked_values(int argc, const char* const* argv) {
 }
 
 }  // namespace
+
+void take_tunnels(const StructureOptions& others, Arguments& arguments) {
+  StructureOptions& structures = arguments.structures;
+  const TunnelArguments& named = arguments.tunnels;
+  structures.tunnels = named.tunnels.value_or(others.tunnels);
+  structures.tunnel_levels = named.levels.value_or(others.tunnel_levels);
+  structures.atoms = named.atoms.value_or(others.atoms);
+  structures.most_tunnels = named.most ? named.most : others.most_tunnels;
+}
 
 std::vector<VerbHelp> command_line_help() {
   CLI::App app;

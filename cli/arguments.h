@@ -39,12 +39,19 @@ struct ViewArguments {
   ViewOptions sampling;
 };
 
+/// What the command line says of tunnels; what it does not say is the cache's.
+struct TunnelArguments {
+  std::optional<std::uint32_t> tunnels, levels, atoms;
+  std::optional<std::uint64_t> most;
+};
+
 struct Arguments {
   Verb verb = Verb::render;
   std::vector<std::string> inputs;  // positional, in order
   std::string output;
   ViewArguments view;
   StructureOptions structures;
+  TunnelArguments tunnels;  // what is named of `structures`
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
   std::size_t threads = 0;                   // 0: all
   bool quiet = false, json = false;
@@ -85,6 +92,9 @@ struct ParsedCommandLine {
   std::string text;
 };
 [[nodiscard]] ParsedCommandLine parse_command_line(int argc, const char* const* argv);
+
+/// What the command line does not say of tunnels and atoms becomes that of `others`.
+void take_tunnels(const StructureOptions& others, Arguments& arguments);
 
 /// The command line as completions need it.
 struct OptionHelp {

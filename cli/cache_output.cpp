@@ -40,11 +40,18 @@ CacheContent wanted_cache(const Arguments& arguments, Console& console) {
   wanted.max_depth = arguments.view.sampling.max_depth;
   wanted.shadow_bits = arguments.view.sampling.shadow_bits;
   wanted.scene_hash = loaded.hash;
-  wanted.storage = {arguments.structures.ray_trees_percent, arguments.structures.disk_bytes};
+  wanted.storage = storage_options(arguments.structures);
   return wanted;
 }
 
 }  // namespace
+
+StorageOptions storage_options(const StructureOptions& structures) {
+  return {structures.ray_trees_percent,
+          structures.disk_bytes,
+          {structures.tunnels, structures.tunnel_levels, structures.most_tunnels},
+          structures.atoms};
+}
 
 std::optional<Json> finished_cache(const Arguments& arguments, Console& console) {
   const std::string& output = arguments.output;

@@ -4,9 +4,13 @@
 
 #include "arguments.h"
 #include "base/json.h"
+#include "cache/cache.h"
 #include "console.h"
 
 namespace relook {
+
+/// What the cache is to hold beside what always is there.
+[[nodiscard]] StorageOptions storage_options(const StructureOptions& structures);
 
 /// Of a cache that is at the output and is the one asked for, every file with its hash: its manifest. Nothing if the
 /// output is free, or may be replaced. Throws UsageError for all else that is there, IoError where it cannot be looked

@@ -9,6 +9,7 @@
 #include "engine/compare.h"
 #include "engine/render.h"
 #include "report/places.h"
+#include "load_cache.h"
 
 namespace relook {
 namespace {
@@ -41,8 +42,13 @@ void take_over(const Json& kept, StepReport& entry) {
 }
 
 RegionOptions region_options(const StructureOptions& structures) {
-  return {structures.groups, structures.tunnels, structures.ray_trees_percent / 100,
-          structures.color_trees_percent / 100, structures.atoms};
+  return {.groups = structures.groups,
+          .tunnels = structures.tunnels,
+          .ray_trees = structures.ray_trees_percent / 100,
+          .color_trees = structures.color_trees_percent / 100,
+          .atoms = structures.atoms,
+          .tunnel_levels = structures.tunnel_levels,
+          .most_tunnels = structures.most_tunnels};
 }
 
 /// The step and, one after the other, the phases that its report times.
@@ -84,8 +90,9 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
       folder_(plan, journal,
               {opened.image.frame.width, opened.image.frame.height,
                arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view, arguments.report}),
+      tunnels_(opened.tunnels),
       replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
-                std::move(residency)) {
+                std::move(residency), std::move(opened.tunnels)) {
   report_.scene = replayer_.state().document().file;
   report_.scene_hash = cache.scene_hash;
   report_.cache_folder = arguments.inputs[0];
@@ -277,7 +284,17 @@ void JournalRun::show_part(const StepReport& entry) {
   console_.part(share(done), share(done + 1), "step " + label_of(entry) + " " + entry.name);
 }
 
+/// Damage of tunnels comes to light when they are first used.
+void JournalRun::note_tunnel_damage() {
+  if (!tunnels_) return;
+  std::vector<std::string> damage = sentences({tunnels_->take_faults(), {}, {}});
+  report_.cache_damage.insert(report_.cache_damage.end(), damage.begin(), damage.end());
+  for (std::string& sentence : damage) sentence = arguments_.inputs[0] + ": " + sentence + "; built again";
+  console_.warn(damage);
+}
+
 void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {
+  note_tunnel_damage();
   FrameMeta meta;
   meta.scene_hash = report_.scene_hash;
   meta.edits_hash = entry.edits_hash;

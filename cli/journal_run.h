@@ -64,6 +64,7 @@ class JournalRun {
   Frame full_render();
   void print(const StepReport& entry);
   void print_summary();
+  void note_tunnel_damage();
   void warn_of_clipping(const StepReport& entry);
 
   const Arguments& arguments_;
@@ -71,6 +72,7 @@ class JournalRun {
   const Journal& journal_;
   RunPlan& plan_;
   RunFolder folder_;
+  std::shared_ptr<StoredTunnels> tunnels_;  // of the cache; null: it has none
   Replayer replayer_;
   RunReport report_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

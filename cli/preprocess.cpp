@@ -5,6 +5,7 @@
 #include "cache_output.h"
 #include "engine/cached_image.h"
 #include "engine/image_pieces.h"
+#include "engine/path_classes.h"
 #include "engine/render.h"
 #include "load_cache.h"
 #include "load_scene.h"
@@ -67,15 +68,21 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   require_writable(arguments.output);
   span.emplace(console.trace(), "preprocess");
   RenderStats stats;
-  Image image = preprocess(loaded.state->scene(), arguments.view.sampling, stats, console.stage("preprocess"));
+  const StorageOptions storage = storage_options(arguments.structures);
+  TunnelRecord tunnels;
+  tunnels.shape = storage.tunnels;
+  if (storage.atoms > 0) tunnels.atoms = atoms_of(*loaded.state, storage.atoms);
+  Image image =
+      preprocess(loaded.state->scene(), arguments.view.sampling, stats, console.stage("preprocess"), &tunnels);
   console.end_stage();
   span.emplace(console.trace(), "write cache");
   const std::size_t paths = image.paths.size();
   forget_trees(image, arguments.structures.ray_trees_percent / 100);
-  CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash);
-  content.storage = {arguments.structures.ray_trees_percent, arguments.structures.disk_bytes};
+  CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash, std::move(tunnels));
+  content.storage = storage;
   console.check_interrupt();
-  if (arguments.structures.disk_bytes) fit_to_disk(content, *arguments.structures.disk_bytes);
+  if (arguments.structures.disk_bytes)
+    fit_to_disk(content, *arguments.structures.disk_bytes, tunnel_areas(*loaded.state, content));
   write_cache(arguments.output, content, arguments.overwrite ? OldCache::replace : OldCache::keep);
   span.reset();
   console.part_done();

@@ -73,7 +73,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
   return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()), opened.image,
-          opened.scene_hash, opened.losses};
+          opened.scene_hash, opened.losses, opened.tunnels};
 }
 
 std::uint64_t samples_in(const Image& image, const std::vector<std::size_t>& tiles) {
@@ -174,15 +174,39 @@ class ReplayCommand {
   CacheFacts facts_;
 };
 
+/// The tunnels of the cache, where the command line does not say otherwise; in words, what becomes of them if it does.
+void take_tunnels_of(const Json& manifest, Arguments& arguments, Console& console) {
+  const Json& storage = manifest["content"]["storage"];
+  StructureOptions stored;
+  const auto number = [&](const char* key) { return storage[key].get<std::uint32_t>(); };
+  const bool has_tunnels = number("tunnels") > 0;
+  if (has_tunnels) {
+    stored.tunnels = number("tunnels");
+    stored.tunnel_levels = number("tunnel_levels");
+    if (stored.tunnels > 1) stored.atoms = number("atoms");
+    if (!storage["most_tunnels"].is_null()) stored.most_tunnels = storage["most_tunnels"].get<std::uint64_t>();
+  }
+  take_tunnels(stored, arguments);
+  const StructureOptions& wanted = arguments.structures;
+  const bool is_same = wanted.tunnels == stored.tunnels && wanted.tunnel_levels == stored.tunnel_levels &&
+                       wanted.most_tunnels == stored.most_tunnels &&
+                       (stored.tunnels < 2 || wanted.atoms == stored.atoms);
+  if (has_tunnels && wanted.tunnels > 0 && !is_same)
+    console.line(arguments.inputs[0] + ": its tunnels are of other --tunnels, --tunnel-levels, --most-tunnels or " +
+                 "--atoms; others are built when a step needs them");
+}
+
 }  // namespace
 
-ExitCode run_replay(const Arguments& arguments, Console& console) {
+ExitCode run_replay(const Arguments& given, Console& console) {
+  Arguments arguments = given;
   if (arguments.structures.memory_bytes) give_back_large_blocks();
   const std::string& cache = arguments.inputs[0];
   const std::vector<Journal> journals = read_journals(arguments, console);
   const std::shared_ptr<const DisplayView> view = display_view_of_environment();
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);
+  take_tunnels_of(manifest, arguments, console);
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, view.get());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
   // Also for runs that are complete: the cache and the journals must be as the command says.

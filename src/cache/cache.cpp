@@ -14,6 +14,7 @@
 #include "cache/image_parts.h"
 #include "cache/manifest.h"
 #include "cache/scene_parts.h"
+#include "cache/tunnel_parts.h"
 
 namespace relook {
 namespace {
@@ -36,6 +37,22 @@ struct Finding {
   bool is_lost = false;  // missing, or not the bytes that were written
 };
 
+void decode_tunnels(std::size_t group, BytesView bytes, Reading& reading) {
+  CacheContent& content = reading.content;
+  const TunnelReader tunnels(ByteSource(bytes), reading.manifest.identity, content.storage, content.camera,
+                             content.samples, group);
+  const TileGroup tiles = cache_group(content.camera, content.samples, group);
+  for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
+    TileTunnels of_tile;
+    if (tunnels.has(tile)) of_tile = tunnels.tunnels(tile, reading.manifest.pieces.ray_paths);
+    if (reading.users.tunnels == TunnelReading::check) continue;
+    content.around_tiles[tile] = tunnels.around(tile);
+    content.tunnels[tile] = std::move(of_tile);
+  }
+  // Last, so that damage is told as such.
+  check_sound(tunnels.bound_to() == hashes_bound_to(reading.manifest, group), kOfOtherTrees);
+}
+
 void decode(const PartFile& part, BytesView bytes, Reading& reading) {
   const CacheIdentity& identity = reading.manifest.identity;
   CacheContent& content = reading.content;
@@ -53,15 +70,9 @@ void decode(const PartFile& part, BytesView bytes, Reading& reading) {
     case Part::trees:
       if (reading.uses_trees) decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
       return;
+    case Part::tunnels:
+      return decode_tunnels(part.group, bytes, reading);
   }
-}
-
-const CacheFile& find_file(const Manifest& manifest, const PartFile& part) {
-  const std::string start = stem(part);
-  const auto found = std::find_if(manifest.files.begin(), manifest.files.end(),
-                                  [&](const CacheFile& file) { return file.name.starts_with(start); });
-  check_sound(found != manifest.files.end(), "the manifest names no file " + start);
-  return *found;
 }
 
 /// Reads, verifies and decodes one file.
@@ -104,6 +115,8 @@ bool is_fault(const Finding& finding) { return finding.answer.fault != CacheFaul
 
 /// Can be made good from the rest of the cache.
 bool is_loss(const Finding& finding) {
+  // Of tunnels alone nothing but time depends, if they are of other ray trees they are none.
+  if (finding.part.part == Part::tunnels) return finding.answer.fault != CacheFault::unreadable;
   const bool follows_from_scene =
       finding.part.part == Part::frame || finding.part.part == Part::paths || finding.part.part == Part::trees;
   return finding.is_lost && follows_from_scene && finding.answer.fault != CacheFault::unreadable;
@@ -112,14 +125,15 @@ bool is_loss(const Finding& finding) {
 /// What is to be done about losses, and nothing left in `content` of what is lost.
 CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& content) {
   CacheLosses losses;
-  std::set<std::size_t> tiles;
+  std::set<std::size_t> tiles, tunnels;
   const std::size_t all = cache_tile_count(content.camera);
   for (const Finding& finding : findings) {
     losses.faults.push_back(finding.answer);
-    const bool is_group = finding.part.part == Part::trees;
+    const bool is_group = finding.part.part == Part::trees || finding.part.part == Part::tunnels;
     const TileGroup lost =
         is_group ? cache_group(content.camera, content.samples, finding.part.group) : TileGroup{0, all};
-    for (std::size_t tile = lost.first; tile < lost.last; ++tile) tiles.insert(tile);
+    for (std::size_t tile = lost.first; tile < lost.last; ++tile)
+      (finding.part.part == Part::tunnels ? tunnels : tiles).insert(tile);
     if (finding.part.part == Part::paths) content.paths = PathTable();
   }
   content.frame.resize(std::size_t{content.camera.width} * content.camera.height);
@@ -129,7 +143,12 @@ CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& cont
     content.trees[tile] = TileTrees();
     content.sample_colors[tile].clear();
   }
+  for (const std::size_t tile : tunnels) {
+    content.around_tiles[tile].clear();
+    content.tunnels[tile] = TileTunnels();
+  }
   losses.tiles.assign(tiles.begin(), tiles.end());
+  losses.tunnels.assign(tunnels.begin(), tunnels.end());
   return losses;
 }
 
@@ -149,7 +168,11 @@ std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& readin
     content.trees.resize(tiles);
     content.sample_colors.resize(tiles);
   }
-  std::ranges::move(read_parts(parts.subspan(kFirstTrees), reading), std::back_inserter(findings));
+  const auto has_trees = [](const PartFile& part) { return part.part == Part::trees; };
+  const auto trees = static_cast<std::size_t>(std::ranges::count_if(parts, has_trees));
+  std::ranges::move(read_parts(parts.subspan(kFirstTrees, trees), reading), std::back_inserter(findings));
+  if (reading.users.tunnels != TunnelReading::skip)
+    std::ranges::move(read_parts(parts.subspan(kFirstTrees + trees), reading), std::back_inserter(findings));
   return findings;
 }
 
@@ -165,6 +188,7 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
   const Manifest& manifest = reading.manifest;
   CacheContent& content = reading.content;
   content.storage = manifest.storage;
+  content.pieces = manifest.pieces;
   content.camera = manifest.camera;
   content.samples = manifest.samples;
   content.max_depth = manifest.max_depth;
@@ -179,6 +203,9 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
     findings.push_back(
         {{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
 
+  const bool keeps_tunnels = has_tunnels(content.storage, content.camera) && reading.users.tunnels == TunnelReading::keep;
+  content.around_tiles.resize(keeps_tunnels ? cache_tile_count(content.camera) : 0);
+  content.tunnels.resize(content.around_tiles.size());
   const std::vector<PartFile> parts = parts_of(content);
   std::vector<Finding> of_scene, of_image;
   const auto read_scene = [&] {
@@ -198,6 +225,10 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
 }
 
 }  // namespace
+
+bool has_tunnels(const StorageOptions& storage, const Camera& camera) {
+  return !cell_levels(storage.tunnels, camera.width, camera.height).empty();
+}
 
 std::string_view sentence(CacheFault fault) {
   switch (fault) {
@@ -292,6 +323,10 @@ CacheReport check_cache(const std::filesystem::path& path) {
   }
   if (report.worst.fault == CacheFault::missing || report.worst.fault == CacheFault::not_a_cache) return report;
 
+  if (report.findings.empty() && count_pieces(reading.content) != reading.manifest.pieces) {
+    report.findings.push_back(std::string(kManifestName) + ": the cache does not have as many pieces as it says");
+    report.worst = {CacheFault::damaged, std::string(kManifestName), "the cache does not have as many pieces as it says"};
+  }
   look_for_strays(path, reading.manifest, report);
   return report;
 }

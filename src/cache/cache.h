@@ -5,23 +5,45 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/json.h"
 #include "scene/image.h"
+#include "region/tile_tunnels.h"
+#include "region/tunnel_shape.h"
 #include "scene/look.h"
 #include "trace/ray_path.h"
 #include "trace/ray_tree.h"
 
 namespace relook {
 
-/// What preprocess was told about how much of the ray trees to store.
+/// What preprocess was told about which ray trees and tunnels to store.
 struct StorageOptions {
   double ray_trees_percent = 100;           // of the samples; the others' hits are left out
   std::optional<std::uint64_t> disk_bytes;  // of the whole cache, at most
+  TunnelShape tunnels{0, 2, std::nullopt};
+  std::uint32_t atoms = 0;  // depth of the node hierarchy from which tunnels count nodes as one object; 0: none
+  /// Are tunnels of a shape these? Where a region has one, paths make no difference.
+  [[nodiscard]] bool has_tunnels_like(const TunnelShape& shape, std::uint32_t of_atoms) const {
+    return tunnels == shape && (tunnels.of_region < 2 || atoms == of_atoms);
+  }
   bool operator==(const StorageOptions&) const = default;
 };
+
+/// How many of what an image has (Table 2 of the paper).
+struct PieceNumbers {
+  std::uint64_t ray_paths = 0;
+  std::uint64_t groups = 0;     // the largest regions whose samples all have one path, single pixels included
+  std::uint64_t ray_trees = 0;  // that are stored
+  std::uint64_t tunnels = 0;    // that are stored, with those above the tiles
+  bool operator==(const PieceNumbers&) const = default;
+};
+[[nodiscard]] bool has_tunnels(const StorageOptions& storage, const Camera& camera);
+struct CacheContent;
+/// Counts them.
+[[nodiscard]] PieceNumbers count_pieces(const CacheContent& content);
 
 /// Everything a replay needs. Plain data; the engine turns it into a SceneState and an Image and back.
 struct CacheContent {
@@ -35,7 +57,10 @@ struct CacheContent {
   PathTable paths;                               // laid out for `lights` and `shadow_bits`
   std::vector<TileTrees> trees;                  // [tiles]
   std::vector<std::vector<Rgba>> sample_colors;  // [tiles][samples]
+  std::vector<Sections> around_tiles;            // [tiles] around all tunnels of each; empty: there are no tunnels
+  std::vector<TileTunnels> tunnels;              // [tiles] an empty one: left out; with `around_tiles`
   StorageOptions storage;
+  PieceNumbers pieces;
 };
 
 /// Why a directory cannot be used as a cache. Each has one sentence.
@@ -65,9 +90,11 @@ struct CacheAnswer {
 /// work. Throws IoError, ResourceError.
 void require_writable(const std::filesystem::path& path);
 
-/// Takes hits out of `content`, of the tile groups that are worth the least (paper 4.3: time to rebuild over bytes on
-/// disk), until its cache is no larger than `bytes`. Throws ResourceError that names the least it takes.
-void fit_to_disk(CacheContent& content, std::uint64_t bytes);
+/// Takes hits and tunnels out of `content`, those of the tile groups that are worth the least (paper 4.3: time to
+/// rebuild over bytes on disk, of tunnels times their surface area), until its cache is no larger than `bytes`. Throws ResourceError that names the least it takes.
+/// `tunnel_areas`: by tile, if there are tunnels, see PieceFacts. Times are estimates, so that a cache's bytes do not
+/// depend on a clock.
+void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const double> tunnel_areas = {});
 
 /// What becomes of another cache that is at the path of a new one.
 enum class OldCache { replace, keep };
@@ -86,7 +113,15 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content,
 struct CacheLosses {
   std::vector<CacheAnswer> faults;  // one a file, in the order of the files
   std::vector<std::size_t> tiles;   // to be traced again, increasing; all of them when the paths are lost
+  std::vector<std::size_t> tunnels;  // of these tiles they are to be built again, increasing
   [[nodiscard]] bool empty() const { return faults.empty(); }
+};
+
+/// What becomes of tunnels that are read.
+enum class TunnelReading : std::uint8_t {
+  keep,
+  check,  // every byte, but they are not kept
+  skip    // their files are not opened; see StoredTunnels
 };
 
 /// Who is called while a cache is being read. What they do to the content stays done.
@@ -96,6 +131,7 @@ struct CacheUsers {
   /// The trees and colours of a tile are there and sound; they may be taken to where there is more room. Comes after
   /// `scene`, for several tiles at once; the vectors of tiles keep their elements where they are.
   std::function<void(CacheContent&, std::size_t tile)> tile;
+  TunnelReading tunnels = TunnelReading::keep;
 };
 
 /// Reads and verifies every hash and every index. On any fault `content` is untouched; with `losses`, files that are

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a folder and of its folder of trees.
+/// Of a folder and of the folders in it.
 struct Entry {
   std::string name;  // relative to the folder
   bool is_own = false, is_system = false;
@@ -34,7 +34,7 @@ bool is_folder(const fs::path& path) {
   return fs::symlink_status(path, error).type() == fs::file_type::directory;
 }
 
-/// The entries of one folder of a cache, `inner` "" or "trees/", by name.
+/// The entries of one folder of a cache, `inner` "", "trees/" or "tunnels/", by name.
 std::vector<Entry> entries_of(const fs::path& folder, const std::string& inner, std::error_code& error) {
   std::vector<Entry> entries;
   for (fs::directory_iterator at(folder / inner, error), end; !error && at != end; at.increment(error)) {
@@ -47,20 +47,20 @@ std::vector<Entry> entries_of(const fs::path& folder, const std::string& inner, 
   return entries;
 }
 
-bool has_trees(const fs::path& folder, const Entry& entry) {
-  return entry.name == kTreesFolder && is_folder(folder / entry.name);
+bool is_inner_folder(const fs::path& folder, const Entry& entry) {
+  return std::ranges::find(kInnerFolders, entry.name) != kInnerFolders.end() && is_folder(folder / entry.name);
 }
 
-/// Calls visit(entry) for everything in a folder, where a cache's folder of trees counts as what is in it.
+/// Calls visit(entry) for everything in a folder, where a cache's inner folders count as what is in them.
 void for_each_entry(const fs::path& folder, std::error_code& error, const std::function<void(const Entry&)>& visit) {
   for (const Entry& entry : entries_of(folder, "", error)) {
-    if (!has_trees(folder, entry)) {
+    if (!is_inner_folder(folder, entry)) {
       visit(entry);
       continue;
     }
-    std::error_code of_trees;
-    for (const Entry& inner : entries_of(folder, entry.name + "/", of_trees)) visit(inner);
-    if (of_trees) error = of_trees;
+    std::error_code of_inner;
+    for (const Entry& inner : entries_of(folder, entry.name + "/", of_inner)) visit(inner);
+    if (of_inner) error = of_inner;
   }
 }
 
@@ -149,7 +149,7 @@ Occupant what_folder_holds(const fs::path& path) {
 }
 
 void remove_empty_folders(const fs::path& folder) {
-  ::rmdir((folder / kTreesFolder).c_str());
+  for (const std::string_view inner : kInnerFolders) ::rmdir((folder / inner).c_str());
   ::rmdir(folder.c_str());
 }
 

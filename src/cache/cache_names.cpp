@@ -25,8 +25,9 @@ bool is_content_name(std::string_view name) {
   const std::size_t dash = name.rfind('-');
   if (dash == std::string_view::npos || !is_hash(name.substr(dash + 1))) return false;
   const std::string_view stem = name.substr(0, dash);
-  if (stem.starts_with(kTreesFolder) && stem.size() > kTreesFolder.size() && stem[kTreesFolder.size()] == '/')
-    return consists_of(stem.substr(kTreesFolder.size() + 1), kDigits);
+  for (const std::string_view folder : kInnerFolders)
+    if (stem.starts_with(folder) && stem.size() > folder.size() && stem[folder.size()] == '/')
+      return consists_of(stem.substr(folder.size() + 1), kDigits);
   return stem == "geometry" || stem == "textures" || stem == "frame" || stem == "paths";
 }
 

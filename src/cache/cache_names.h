@@ -1,11 +1,14 @@
 // Names in a cache's folder: those of its own files, which alone are ever removed.
 #pragma once
+#include <array>
 #include <string_view>
 
 namespace relook {
 
 inline constexpr std::string_view kManifestName = "MANIFEST.json";
-inline constexpr std::string_view kTreesFolder = "trees";
+inline constexpr std::string_view kTreesFolder = "trees", kTunnelsFolder = "tunnels";
+/// The folders in a cache's.
+inline constexpr std::array<std::string_view, 2> kInnerFolders{kTreesFolder, kTunnelsFolder};
 
 /// XXH3-128 in hexadecimal.
 [[nodiscard]] bool is_hash(std::string_view text);

@@ -1,4 +1,4 @@
-// The files that a cache consists of, beside its manifest: one a part, but of ray trees one a group of tiles.
+// The files that a cache consists of, beside its manifest: one a part, but of ray trees and tunnels one a group of tiles.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,24 +8,32 @@
 
 #include "cache/cache.h"
 #include "cache/container.h"
+#include "cache/manifest.h"
 
 namespace relook {
 
-enum class Part : std::uint8_t { look, geometry, textures, frame, paths, trees };
-constexpr std::array<std::string_view, 6> kPartNames{"look.json", "geometry", "textures", "frame", "paths", "trees"};
+enum class Part : std::uint8_t { look, geometry, textures, frame, paths, trees, tunnels };
+constexpr std::array<std::string_view, 7> kPartNames{"look.json", "geometry", "textures", "frame",
+                                                     "paths",     "trees",    "tunnels"};
 
 struct PartFile {
   Part part = Part::look;
-  std::size_t group = 0;  // of Part::trees
+  std::size_t group = 0;  // of Part::trees and Part::tunnels
 };
 
-/// In this order: the scene comes first, then the image.
+/// In this order: the scene comes first, then the image, then its tunnels.
 [[nodiscard]] std::vector<PartFile> parts_of(const CacheContent& content);
 
 /// The start of a part's file name; the hash of its bytes follows (look.json has none, to be found by people).
 [[nodiscard]] std::string stem(const PartFile& part);
 
-/// The bytes of its file.
+/// The bytes of its file. Not of Part::tunnels: see encode_tunnels().
 [[nodiscard]] Bytes encode(const PartFile& part, const CacheContent& content, const CacheIdentity& identity);
+
+/// The entry of a part. Throws CacheDamage if there is none.
+[[nodiscard]] const CacheFile& find_file(const Manifest& manifest, const PartFile& part);
+/// What the tunnels of a group must say that they are bound to: the files of ray trees and paths that the cache has.
+[[nodiscard]] std::string hashes_bound_to(const Manifest& manifest, std::size_t group);
+inline constexpr std::string_view kOfOtherTrees = "the tunnels are of other ray trees";
 
 }  // namespace relook

@@ -1,10 +1,12 @@
 #include "cache/container.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 #include <zstd.h>
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <memory>
 #include <new>
 
@@ -38,11 +40,13 @@ T value_at(BytesView bytes, std::size_t offset) {
 
 /// Can stored bytes unpack to so many? Their frame says how many they are, and none makes more than a block, 128 KiB,
 /// of 4 bytes: a table entry that says otherwise is not believed.
-bool can_unpack_to(BytesView stored, std::uint64_t raw_bytes) {
+/// `start`: their first bytes, up to kFrameHeaderBytes.
+bool can_unpack_to(BytesView start, std::uint64_t stored_bytes, std::uint64_t raw_bytes) {
   constexpr std::uint64_t kBlockBytes = 128 << 10, kSmallestBlock = 4;
-  return ZSTD_getFrameContentSize(stored.data(), stored.size()) == raw_bytes &&
-         raw_bytes / kBlockBytes <= stored.size() / kSmallestBlock;
+  return ZSTD_getFrameContentSize(start.data(), start.size()) == raw_bytes &&
+         raw_bytes / kBlockBytes <= stored_bytes / kSmallestBlock;
 }
+constexpr std::uint64_t kFrameHeaderBytes = 18;
 
 /// What a section may unpack to where nothing else says how long it is: all that this machine has.
 void require_memory(const std::string& section, std::uint64_t raw_bytes) {
@@ -143,34 +147,58 @@ Bytes ContainerWriter::finish(const CacheIdentity& identity) const {
   return file;
 }
 
-ContainerReader::ContainerReader(BytesView file, const CacheIdentity& identity) : file_(file) {
-  if (file.size() < kHeaderBytes + sizeof(std::uint64_t))
+BytesView ByteSource::bytes(std::uint64_t offset, std::uint64_t count, Bytes& copy) const {
+  require(offset <= size_ && count <= size_ - offset, "only what is in a file is read");
+  if (const auto* memory = std::get_if<BytesView>(&source_)) return memory->subspan(offset, count);
+  const auto& path = std::get<std::filesystem::path>(source_);
+  copy.resize(count);
+  const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (file < 0) throw CacheDamage(CacheFault::damaged, std::string("cannot open: ") + std::strerror(errno));
+  std::uint64_t done = 0;
+  int error = 0;
+  while (done < count) {
+    const ssize_t got = ::pread(file, copy.data() + done, count - done, static_cast<off_t>(offset + done));
+    if (got < 0 && errno == EINTR) continue;
+    error = got < 0 ? errno : 0;
+    if (got <= 0) break;
+    done += static_cast<std::uint64_t>(got);
+  }
+  ::close(file);
+  if (error != 0) throw CacheDamage(CacheFault::damaged, std::string("cannot be read: ") + std::strerror(error));
+  if (done < count) throw CacheDamage(CacheFault::truncated, "the file is cut short");
+  return copy;
+}
+
+ContainerReader::ContainerReader(ByteSource file, const CacheIdentity& identity) : file_(std::move(file)) {
+  if (file_.size() < kHeaderBytes + sizeof(std::uint64_t))
     throw CacheDamage(CacheFault::truncated, "the header is cut short");
-  check_sound(text_of(file.first(kMagic.size())) == kMagic, "the first bytes are not RLKCACHE");
-  const auto version = value_at<std::uint32_t>(file, 8);
+  Bytes copy;
+  const BytesView header = file_.bytes(0, kHeaderBytes, copy);
+  check_sound(text_of(header.first(kMagic.size())) == kMagic, "the first bytes are not RLKCACHE");
+  const auto version = value_at<std::uint32_t>(header, 8);
   if (version != kCacheFormat)
     throw CacheDamage(CacheFault::other_version,
                       "format " + std::to_string(version) + ", this program reads " + std::to_string(kCacheFormat));
-  read_header(identity);
-}
-
-void ContainerReader::read_header(const CacheIdentity& identity) {
-  const auto count = value_at<std::uint32_t>(file_, 12);
-  const std::size_t table_end = kHeaderBytes + std::size_t{count} * kEntryBytes;
+  const std::uint64_t table_end = kHeaderBytes + std::uint64_t{value_at<std::uint32_t>(header, 12)} * kEntryBytes;
   if (file_.size() < table_end + sizeof(std::uint64_t))
     throw CacheDamage(CacheFault::truncated, "the section table is cut short");
-  check_sound(value_at<std::uint64_t>(file_, table_end) == hash64(file_.first(table_end)), "header hash mismatch");
-  if (text_of(file_.subspan(16, kHashDigits)) != identity.scene_hash)
-    throw CacheDamage(CacheFault::other_scene, "the header has the hash of another scene");
-  if (text_of(file_.subspan(16 + kHashDigits, kHashDigits)) != identity.options_hash)
-    throw CacheDamage(CacheFault::other_options, "the header has the hash of other options");
-  read_table(count);
+  read_header(file_.bytes(0, table_end + sizeof(std::uint64_t), copy), identity);
 }
 
-void ContainerReader::read_table(std::uint32_t count) {
+void ContainerReader::read_header(BytesView start, const CacheIdentity& identity) {
+  const std::size_t table_end = start.size() - sizeof(std::uint64_t);
+  check_sound(value_at<std::uint64_t>(start, table_end) == hash64(start.first(table_end)), "header hash mismatch");
+  if (text_of(start.subspan(16, kHashDigits)) != identity.scene_hash)
+    throw CacheDamage(CacheFault::other_scene, "the header has the hash of another scene");
+  if (text_of(start.subspan(16 + kHashDigits, kHashDigits)) != identity.options_hash)
+    throw CacheDamage(CacheFault::other_options, "the header has the hash of other options");
+  read_table(start, value_at<std::uint32_t>(start, 12));
+}
+
+void ContainerReader::read_table(BytesView start, std::uint32_t count) {
   std::uint64_t expected_offset = kHeaderBytes + std::size_t{count} * kEntryBytes + sizeof(std::uint64_t);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const BytesView entry = file_.subspan(kHeaderBytes + std::size_t{i} * kEntryBytes, kEntryBytes);
+    const BytesView entry = start.subspan(kHeaderBytes + std::size_t{i} * kEntryBytes, kEntryBytes);
     const std::string_view padded = text_of(entry.first(kNameBytes));
     Section section;
     section.name = padded.substr(0, padded.find('\0'));
@@ -186,8 +214,10 @@ void ContainerReader::read_table(std::uint32_t count) {
                 "the table entry of section " + printable(section.name) + " makes no sense");
     if (section.stored_bytes > file_.size() - section.offset)
       throw CacheDamage(CacheFault::truncated, "section " + printable(section.name) + " is cut short");
+    Bytes copy;
+    const BytesView first = file_.bytes(section.offset, std::min(section.stored_bytes, kFrameHeaderBytes), copy);
     check_sound(
-        section.codec != kZstd || can_unpack_to(file_.subspan(section.offset, section.stored_bytes), section.raw_bytes),
+        section.codec != kZstd || can_unpack_to(first, section.stored_bytes, section.raw_bytes),
         "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
     expected_offset += section.stored_bytes;
     sections_.push_back(std::move(section));
@@ -225,7 +255,8 @@ std::string ContainerReader::text(std::string_view name) const {
 }
 
 void ContainerReader::read(const Section& section, std::span<std::byte> out) const {
-  const BytesView stored = file_.subspan(section.offset, section.stored_bytes);
+  Bytes copy;
+  const BytesView stored = file_.bytes(section.offset, section.stored_bytes, copy);
   check_sound(hash64(stored) == section.hash, "hash mismatch in section " + section.name);
   if (section.raw_bytes == 0) return;
   std::unique_ptr<std::byte[]> unpacked;  // not filled with zeros first

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "base/files.h"
@@ -16,7 +17,7 @@
 namespace relook {
 
 /// Layout of a cache directory; a change of any byte's meaning raises it.
-inline constexpr std::uint32_t kCacheFormat = 2;
+inline constexpr std::uint32_t kCacheFormat = 3;
 inline constexpr std::string_view kContainerMagic = "RLKCACHE";  // how every .rlk file begins
 
 /// Which cache a file belongs to: XXH3-128 in hexadecimal of the scene and of the options.
@@ -59,12 +60,27 @@ class ContainerWriter {
   std::vector<Section> sections_;
 };
 
-/// A .rlk file in memory, its header and table checked. Every function throws CacheDamage; ResourceError where a
-/// section would fill more than this machine's memory.
+/// Where the bytes of a file are: in memory, or on disk, of so many bytes, to be read as they are asked for.
+class ByteSource {
+ public:
+  explicit ByteSource(BytesView bytes) : size_(bytes.size()), source_(bytes) {}
+  ByteSource(std::filesystem::path file, std::uint64_t size) : size_(size), source_(std::move(file)) {}
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Requires: they are within the size. `copy`: holds them if they come from disk. Throws CacheDamage.
+  [[nodiscard]] BytesView bytes(std::uint64_t offset, std::uint64_t count, Bytes& copy) const;
+
+ private:
+  std::uint64_t size_;
+  std::variant<BytesView, std::filesystem::path> source_;
+};
+
+/// A .rlk file, its header and table checked. Every function throws CacheDamage; ResourceError where a section would
+/// fill more than this machine's memory.
 class ContainerReader {
  public:
-  /// `file` must outlive the reader.
-  ContainerReader(BytesView file, const CacheIdentity& identity);
+  /// What is in memory must outlive the reader.
+  ContainerReader(ByteSource file, const CacheIdentity& identity);
+  ContainerReader(BytesView file, const CacheIdentity& identity) : ContainerReader(ByteSource(file), identity) {}
 
   [[nodiscard]] bool has(std::string_view name) const;
   [[nodiscard]] std::uint64_t raw_bytes(std::string_view name) const;
@@ -91,13 +107,14 @@ class ContainerReader {
     std::uint32_t codec = 0, stride = 1;
     std::uint64_t raw_bytes = 0, stored_bytes = 0, offset = 0, hash = 0;
   };
-  void read_header(const CacheIdentity& identity);
-  void read_table(std::uint32_t count);
+  /// `start`: header, table and its hash.
+  void read_header(BytesView start, const CacheIdentity& identity);
+  void read_table(BytesView start, std::uint32_t count);
   [[nodiscard]] const Section& find(std::string_view name) const;
   [[nodiscard]] const Section& checked(std::string_view name, std::uint64_t count, std::size_t value_bytes) const;
   void read(const Section& section, std::span<std::byte> out) const;
 
-  BytesView file_;
+  ByteSource file_;
   std::vector<Section> sections_;
 };
 

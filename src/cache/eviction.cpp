@@ -6,6 +6,8 @@ std::string_view policy_name(EvictionPolicy policy) {
   switch (policy) {
     case EvictionPolicy::weight:
       return "weight";
+    case EvictionPolicy::plain_weight:
+      return "plain-weight";
     case EvictionPolicy::lru:
       return "lru";
     case EvictionPolicy::size:
@@ -19,9 +21,11 @@ std::string_view policy_name(EvictionPolicy policy) {
 double eviction_weight(EvictionPolicy policy, const PieceFacts& piece, std::uint64_t change) {
   const auto bytes = static_cast<double>(piece.bytes);
   switch (policy) {
-    case EvictionPolicy::weight: {
+    case EvictionPolicy::weight:
+    case EvictionPolicy::plain_weight: {
       const auto age = static_cast<double>(1 + change - piece.last_use);
-      return piece.return_seconds * piece.surface_area / (bytes * age);
+      const double meets = policy == EvictionPolicy::weight ? piece.surface_area : 1;
+      return piece.return_seconds * meets / (bytes * age);
     }
     case EvictionPolicy::lru:
       return static_cast<double>(piece.last_use);

@@ -6,11 +6,15 @@
 
 namespace relook {
 
-enum class EvictionPolicy : std::uint8_t { weight, lru, size, gdsf };
-inline constexpr EvictionPolicy kEvictionPolicies[] = {EvictionPolicy::weight, EvictionPolicy::lru,
-                                                       EvictionPolicy::size, EvictionPolicy::gdsf};
-/// "weight", "lru", "size", "gdsf".
+/// `plain_weight`: the weight without the surface area of tunnels.
+enum class EvictionPolicy : std::uint8_t { weight, plain_weight, lru, size, gdsf };
+inline constexpr EvictionPolicy kEvictionPolicies[] = {EvictionPolicy::weight, EvictionPolicy::plain_weight,
+                                                       EvictionPolicy::lru, EvictionPolicy::size, EvictionPolicy::gdsf};
+/// "weight", "plain-weight", "lru", "size", "gdsf".
 [[nodiscard]] std::string_view policy_name(EvictionPolicy policy);
+
+/// To find a hit again, by a ray against one object, and to build the tunnels around one: until it has been measured.
+inline constexpr double kHitSeconds = 5e-7, kTunnelSeconds = 3e-7;
 
 /// What a policy may look at.
 struct PieceFacts {
@@ -18,7 +22,7 @@ struct PieceFacts {
   double return_seconds = 0;   // to have it back: from disk, or worked out again
   std::uint64_t last_use = 0;  // the change that used it last
   std::uint64_t uses = 0;      // number of changes that used it
-  double surface_area = 1;     // of a tunnel, relative to the largest: how likely an object meets it; otherwise 1
+  double surface_area = 1;     // of tunnels, relative to the mean: how likely an object meets them; otherwise 1
   double gdsf_inflation = 0;   // of the whole cache when it was used last (Cherkasova 1998)
 };
 

@@ -67,9 +67,16 @@ std::size_t cache_group_count(const Camera& camera, std::uint32_t samples) {
   return (cache_tile_count(camera) + tiles_per_group(samples) - 1) / tiles_per_group(samples);
 }
 
+std::size_t cache_group_of(std::uint32_t samples, std::size_t tile) { return tile / tiles_per_group(samples); }
+
 TileGroup cache_group(const Camera& camera, std::uint32_t samples, std::size_t group) {
   const std::size_t first = group * tiles_per_group(samples);
   return {first, std::min(first + tiles_per_group(samples), cache_tile_count(camera))};
+}
+
+std::uint32_t cache_tile_width(const Camera& camera, std::size_t tile) {
+  const Rect rect = tile_rect_of(camera, tile);
+  return rect.x1 - rect.x0;
 }
 
 std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile) {

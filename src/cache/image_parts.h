@@ -10,12 +10,15 @@
 namespace relook {
 
 [[nodiscard]] std::size_t cache_tile_count(const Camera& camera);
-/// Tiles [first, last) of one trees/ file: up to 131,072 samples, at least one tile.
+/// Tiles [first, last) of one file: up to 131,072 samples, at least one tile.
 struct TileGroup {
   std::size_t first = 0, last = 0;
 };
 [[nodiscard]] std::size_t cache_group_count(const Camera& camera, std::uint32_t samples);
+[[nodiscard]] std::size_t cache_group_of(std::uint32_t samples, std::size_t tile);
 [[nodiscard]] TileGroup cache_group(const Camera& camera, std::uint32_t samples, std::size_t group);
+/// Pixels of one row of a tile of the image.
+[[nodiscard]] std::uint32_t cache_tile_width(const Camera& camera, std::size_t tile);
 /// Samples of a tile of the image.
 [[nodiscard]] std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile);
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::string_view kFormatPrefix = "cache/";
 constexpr std::size_t kLargestManifestBytes = std::size_t{64} << 20;
-constexpr std::size_t kMostFiles = 100000;
+constexpr std::size_t kMostFiles = 200000;
 constexpr std::int64_t kLargestSide = 16384, kMostSamples = 1024, kMostDepth = 32;
-constexpr std::int64_t kMostEntities = 0xFFFFFFFE;
+constexpr std::int64_t kMostEntities = 0xFFFFFFFE, kMostTunnels = 255, kMostAtoms = 1 << 20;
 
 Json vector_json(const Imath::V3f& v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -48,15 +48,39 @@ Camera read_camera(const JsonView& view) {
 
 Json storage_json(const StorageOptions& storage) {
   return {{"ray_trees_percent", storage.ray_trees_percent},
-          {"disk_bytes", storage.disk_bytes ? Json(*storage.disk_bytes) : Json()}};
+          {"disk_bytes", storage.disk_bytes ? Json(*storage.disk_bytes) : Json()},
+          {"tunnels", storage.tunnels.of_region},
+          {"tunnel_levels", storage.tunnels.dropped_levels},
+          {"most_tunnels", storage.tunnels.of_image ? Json(*storage.tunnels.of_image) : Json()},
+          {"atoms", storage.atoms}};
+}
+
+std::optional<std::uint64_t> number_or_null(const JsonView& view) {
+  if (view.value().is_null()) return std::nullopt;
+  return static_cast<std::uint64_t>(view.integer(0, INT64_MAX));
 }
 
 StorageOptions read_storage(const JsonView& view) {
   StorageOptions storage;
   storage.ray_trees_percent = view.at("ray_trees_percent").number(0, 100);
-  const JsonView bytes = view.at("disk_bytes");
-  if (!bytes.value().is_null()) storage.disk_bytes = static_cast<std::uint64_t>(bytes.integer(0, INT64_MAX));
+  storage.disk_bytes = number_or_null(view.at("disk_bytes"));
+  storage.tunnels.of_region = static_cast<std::size_t>(view.at("tunnels").integer(0, kMostTunnels));
+  storage.tunnels.dropped_levels = static_cast<std::uint32_t>(view.at("tunnel_levels").integer(0, kTileLevel));
+  storage.tunnels.of_image = number_or_null(view.at("most_tunnels"));
+  storage.atoms = static_cast<std::uint32_t>(view.at("atoms").integer(0, kMostAtoms));
   return storage;
+}
+
+Json pieces_json(const PieceNumbers& pieces) {
+  return {{"ray_paths", pieces.ray_paths},
+          {"groups", pieces.groups},
+          {"ray_trees", pieces.ray_trees},
+          {"tunnels", pieces.tunnels}};
+}
+
+PieceNumbers read_pieces(const JsonView& view) {
+  const auto number = [&](const char* key) { return static_cast<std::uint64_t>(view.at(key).integer(0, INT64_MAX)); };
+  return {number("ray_paths"), number("groups"), number("ray_trees"), number("tunnels")};
 }
 
 Json content_json(const Manifest& manifest) {
@@ -65,6 +89,7 @@ Json content_json(const Manifest& manifest) {
     files.push_back({{"name", file.name}, {"bytes", file.bytes}, {"hash", file.hash}});
   return {{"arithmetic", arithmetic_json(manifest.arithmetic)},
           {"storage", storage_json(manifest.storage)},
+          {"pieces", pieces_json(manifest.pieces)},
           {"scene", manifest.identity.scene_hash},
           {"options", manifest.identity.options_hash},
           {"camera", camera_json(manifest.camera)},
@@ -82,6 +107,7 @@ Manifest read_content(const JsonView& view) {
   const std::string difference = arithmetic_difference(manifest.arithmetic);
   if (!difference.empty()) throw CacheDamage(CacheFault::other_arithmetic, difference);
   manifest.storage = read_storage(view.at("storage"));
+  manifest.pieces = read_pieces(view.at("pieces"));
   manifest.identity = {view.at("scene").text(), view.at("options").text()};
   if (!is_hash(manifest.identity.scene_hash)) view.at("scene").fail("not a hash");
   if (!is_hash(manifest.identity.options_hash)) view.at("options").fail("not a hash");
@@ -223,6 +249,7 @@ Manifest manifest_of(const CacheContent& content) {
   manifest.shadow_bits = content.shadow_bits;
   manifest.objects = content.objects;
   manifest.lights = content.lights;
+  manifest.pieces = content.pieces;
   return manifest;
 }
 

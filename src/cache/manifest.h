@@ -23,6 +23,7 @@ struct CacheFile {
 struct Manifest {
   Arithmetic arithmetic = own_arithmetic();
   StorageOptions storage;
+  PieceNumbers pieces;
   CacheIdentity identity;
   Camera camera;
   std::uint32_t samples = 1, max_depth = 6, shadow_bits = 0;

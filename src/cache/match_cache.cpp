@@ -53,6 +53,12 @@ CacheAnswer other_content(const Manifest& there, const Manifest& wanted) {
           number(storage.ray_trees_percent));
   compare(storage.disk_bytes == wanted.storage.disk_bytes, "--disk",
           storage.disk_bytes ? std::to_string(*storage.disk_bytes) + " bytes" : "none");
+  const TunnelShape &shape = storage.tunnels, &other_shape = wanted.storage.tunnels;
+  compare(shape.of_region == other_shape.of_region, "--tunnels", std::to_string(shape.of_region));
+  compare(shape.dropped_levels == other_shape.dropped_levels, "--tunnel-levels", std::to_string(shape.dropped_levels));
+  compare(shape.of_image == other_shape.of_image, "--most-tunnels",
+          shape.of_image ? std::to_string(*shape.of_image) : "none");
+  compare(storage.atoms == wanted.storage.atoms, "--atoms", std::to_string(storage.atoms));
   if (others.empty()) return {};
   return {is_same_scene ? CacheFault::other_options : CacheFault::other_scene, std::string(kManifestName),
           listed(others)};

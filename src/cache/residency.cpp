@@ -66,6 +66,7 @@ void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::
   if (p.state == State::resident) resident_bytes_ -= p.facts.bytes;
   free_copy(p);
   p.state = State::resident;
+  p.is_stored = false;
   p.facts.bytes = std::max<std::uint64_t>(bytes, 1);
   p.facts.surface_area = surface_area;
   p.rebuild_seconds = rebuild_seconds.value_or(p.rebuild_seconds);
@@ -73,6 +74,25 @@ void Residency::set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::
   ++p.pins;
   make_room_locked(0);
   --p.pins;
+}
+
+void Residency::set_stored(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds,
+                           double surface_area) {
+  if (!is_watched()) return;
+  const std::lock_guard lock(mutex_);
+  Piece& p = piece(kind, tile);
+  require(p.state == State::missing && kinds_[index_of(kind)].handler.fetch, "what is stored was not there before");
+  p.state = State::stored;
+  p.is_stored = true;
+  p.facts.bytes = std::max<std::uint64_t>(bytes, 1);
+  p.facts.surface_area = surface_area;
+  p.rebuild_seconds = rebuild_seconds;
+}
+
+void Residency::set_surface_area(PieceKind kind, std::size_t tile, double surface_area) {
+  if (!is_watched()) return;
+  const std::lock_guard lock(mutex_);
+  piece(kind, tile).facts.surface_area = surface_area;
 }
 
 Residency::Lease Residency::use(PieceKind kind, std::size_t tile) {
@@ -91,28 +111,43 @@ void Residency::bring_back(PieceKind kind, std::size_t tile) {
   std::unique_lock lock(mutex_);
   Piece& p = piece(kind, tile);
   loaded_.wait(lock, [&] { return p.state != State::loading; });
-  if (p.state != State::spilled) return;
+  if (p.state != State::spilled && p.state != State::stored) return;
+  const State from = p.state;
   make_room_locked(p.facts.bytes);
   resident_bytes_ += p.facts.bytes;
   p.state = State::loading;
-  const SpillFile::Extent extent = *p.copy;
+  const std::optional<SpillFile::Extent> extent = p.copy;
   lock.unlock();
+  const PieceHandler& handler = kinds_[index_of(kind)].handler;
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<std::uint64_t> bytes = p.facts.bytes;
   const auto settle = [&](State state) {
     lock.lock();
     p.state = state;
     loaded_.notify_all();
   };
-  const PieceHandler& handler = kinds_[index_of(kind)].handler;
   try {
-    handler.unpack(tile, spill_->read(extent));
+    if (from == State::stored)
+      bytes = handler.fetch(tile);
+    else
+      handler.unpack(tile, spill_->read(*extent));
   } catch (...) {
     handler.drop(tile);  // what is there of it
-    settle(State::spilled);
+    settle(from);
     resident_bytes_ -= p.facts.bytes;
     throw;
   }
-  settle(State::resident);
-  ++counts_.reloaded[index_of(kind)];
+  settle(bytes ? State::resident : State::missing);
+  resident_bytes_ -= p.facts.bytes;
+  p.is_stored = p.is_stored && bytes;
+  if (!bytes) return;
+  p.facts.bytes = std::max<std::uint64_t>(*bytes, 1);
+  resident_bytes_ += p.facts.bytes;
+  const bool is_first = from == State::stored && !p.has_left;
+  ++(is_first ? counts_.fetched : counts_.reloaded)[index_of(kind)];
+  if (from != State::stored) return;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fetch_seconds_per_byte_ += 0.1 * (seconds / static_cast<double>(p.facts.bytes) - fetch_seconds_per_byte_);
 }
 
 void Residency::expect(PieceKind kind, std::size_t tile) {
@@ -180,6 +215,7 @@ void Residency::forget(PieceKind kind, std::size_t tile) {
     kinds_[index_of(kind)].handler.drop(tile);
   }
   free_copy(p);
+  p.is_stored = false;
   p.state = State::missing;
 }
 
@@ -295,6 +331,7 @@ void Residency::list_candidates() {
 
 /// From disk, if it may go there; what has no other way to come back is priced like that, too.
 double Residency::return_seconds(const Piece& p) const {
+  if (p.is_stored) return static_cast<double>(p.facts.bytes) * fetch_seconds_per_byte_;
   const double by_disk = static_cast<double>(p.facts.bytes) * seconds_per_byte_ * (p.copy ? 1 : 2);
   return spill_ || p.rebuild_seconds == 0 ? by_disk : p.rebuild_seconds;
 }
@@ -303,15 +340,16 @@ bool Residency::evict(PieceKind kind, std::size_t tile) {
   Piece& p = piece(kind, tile);
   const PieceHandler& handler = kinds_[index_of(kind)].handler;
   if (p.state != State::resident || p.pins > 0) return false;
-  if (!p.copy && spill_) {
+  if (!p.copy && !p.is_stored && spill_) {
     const auto start = std::chrono::steady_clock::now();
     p.copy = spill_->write(handler.pack(tile));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     seconds_per_byte_ += 0.1 * (seconds / static_cast<double>(p.facts.bytes) - seconds_per_byte_);
   }
-  if (!p.copy && !handler.may_be_missing) return false;
+  if (!p.copy && !p.is_stored && !handler.may_be_missing) return false;
   handler.drop(tile);
-  p.state = p.copy ? State::spilled : State::missing;
+  p.state = p.copy ? State::spilled : p.is_stored ? State::stored : State::missing;
+  p.has_left = true;
   resident_bytes_ -= p.facts.bytes;
   ++counts_.evicted[index_of(kind)];
   return true;

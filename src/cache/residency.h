@@ -40,10 +40,13 @@ struct PieceHandler {
   std::function<void(std::size_t tile, BytesView)> unpack;
   std::function<void(std::size_t tile)> drop;
   bool may_be_missing = false;  // the owner can do without a copy
+  /// Makes a stored piece resident and returns its bytes; none: it cannot be had, and is missing.
+  std::function<std::optional<std::uint64_t>(std::size_t tile)> fetch;
 };
 
 struct PieceCounts {
   std::array<std::uint64_t, kPieceKinds> evicted{}, reloaded{};
+  std::array<std::uint64_t, kPieceKinds> fetched{};  // stored pieces that were used for the first time
   std::uint64_t others_evicted = 0;
 };
 
@@ -93,6 +96,9 @@ class Residency {
   /// what has been measured; none: as before.
   void set(PieceKind kind, std::size_t tile, std::uint64_t bytes, std::optional<double> rebuild_seconds,
            double surface_area = 1);
+  /// The piece is stored where it can be fetched from as long as it does not change (a cache), of about so many bytes.
+  void set_stored(PieceKind kind, std::size_t tile, std::uint64_t bytes, double rebuild_seconds, double surface_area);
+  void set_surface_area(PieceKind kind, std::size_t tile, double surface_area);
   /// Makes the piece resident unless it is missing, and keeps it so. One of several threads that ask for a piece on
   /// disk reads it, the others wait. Throws IoError, and the piece is on disk as before.
   [[nodiscard]] Lease use(PieceKind kind, std::size_t tile);
@@ -127,13 +133,14 @@ class Residency {
   [[nodiscard]] std::string access_log() const { return std::string(kAccessLogHeader) + log_; }
 
  private:
-  enum class State : std::uint8_t { missing, spilled, loading, resident };
+  enum class State : std::uint8_t { missing, spilled, stored, loading, resident };
   struct Piece {
     State state = State::missing;
     PieceFacts facts;
     double rebuild_seconds = 0;
     std::uint64_t use_before = 0;  // the last change before facts.last_use that used it
     std::uint32_t pins = 0;
+    bool is_stored = false, has_left = false;
     std::optional<SpillFile::Extent> copy;
   };
   struct Kind {
@@ -152,6 +159,7 @@ class Residency {
   }
   void release(PieceKind kind, std::size_t tile);
   void bring_back(PieceKind kind, std::size_t tile);
+  bool fetch(PieceKind kind, std::size_t tile);
   void touch(PieceKind kind, std::size_t tile);
   void log_use(std::string_view kind, std::size_t tile, const PieceFacts& facts, double seconds);
   [[nodiscard]] std::uint64_t known_bytes() const;
@@ -179,6 +187,7 @@ class Residency {
   std::uint64_t outside_bytes_ = 0;  // beside pieces: base, claims and reserve, or as measured if more
   double gdsf_inflation_ = 0;
   double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
+  double fetch_seconds_per_byte_ = 3e-9;  // of what is stored, measured likewise
   std::vector<Candidate> candidates_;  // the next to leave last; made when needed, used up or for one change
   std::vector<Victim> victims_;
   std::uint32_t trims_left_;  // in this change

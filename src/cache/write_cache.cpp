@@ -1,7 +1,7 @@
 // Writing a cache: encoding its parts, fitting them to a disk, publishing the folder.
 #include <algorithm>
 #include <functional>
-#include <numeric>
+#include <iterator>
 #include <utility>
 
 #include "base/error.h"
@@ -10,9 +10,11 @@
 #include "cache/cache.h"
 #include "cache/cache_folder.h"
 #include "cache/cache_parts.h"
+#include "cache/eviction.h"
 #include "cache/image_parts.h"
 #include "cache/manifest.h"
 #include "cache/staged_folder.h"
+#include "cache/tunnel_parts.h"
 
 namespace relook {
 
@@ -20,72 +22,106 @@ void require_writable(const std::filesystem::path& path) { const StagedFolder re
 
 namespace {
 
-/// Of a group of tiles.
-struct GroupSize {
-  std::size_t group = 0;
-  std::uint64_t hits = 0, with_hits = 0, without = 0;  // number; bytes of its file
-  [[nodiscard]] std::uint64_t saved() const { return with_hits - std::min(without, with_hits); }
-  /// Hits take about the same time each to find again.
-  [[nodiscard]] double weight() const { return static_cast<double>(hits) / static_cast<double>(saved() + 1); }
+/// What can be left out of a cache: the hits or the tunnels of a group of tiles.
+struct Optional {
+  PartFile part;
+  std::uint64_t with = 0, without = 0;  // bytes of its file
+  double seconds = 0;                   // to have it back, times how likely a tunnel is met
+  [[nodiscard]] std::uint64_t saved() const { return with - std::min(without, with); }
+  [[nodiscard]] double weight() const { return seconds / static_cast<double>(saved() + 1); }
 };
 
-GroupSize take_hits(CacheContent& content, const CacheIdentity& identity, std::size_t group,
-                    std::vector<TileTrees>& taken) {
-  GroupSize size{group};
-  size.with_hits = encode_trees(content, group, identity).size();
-  const TileGroup tiles = cache_group(content.camera, content.samples, group);
-  for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
-    TileTrees& trees = content.trees[tile];
-    size.hits += trees.hits.size();
-    taken[tile].first_hit = std::exchange(trees.first_hit, {});
-    taken[tile].hits = std::exchange(trees.hits, {});
-  }
-  size.without = encode_trees(content, group, identity).size();
-  return size;
+/// What has been taken out of a cache's content, by tile.
+struct Taken {
+  std::vector<TileTrees> hits;
+  std::vector<TileTunnels> tunnels;
+};
+
+constexpr std::size_t kBoundDigits = 64;
+
+std::uint64_t file_bytes(const CacheContent& content, const CacheIdentity& identity, const PartFile& part) {
+  if (part.part != Part::tunnels) return encode(part, content, identity).size();
+  return encode_tunnels(content, part.group, identity, std::string(kBoundDigits, '0')).size();
 }
 
-void put_back_hits(CacheContent& content, std::size_t group, std::vector<TileTrees>& taken) {
-  const TileGroup tiles = cache_group(content.camera, content.samples, group);
+Optional take_hits(CacheContent& content, const CacheIdentity& identity, const PartFile& part, Taken& taken) {
+  Optional option{part, file_bytes(content, identity, part)};
+  const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
-    content.trees[tile].first_hit = std::move(taken[tile].first_hit);
-    content.trees[tile].hits = std::move(taken[tile].hits);
+    TileTrees& trees = content.trees[tile];
+    option.seconds += kHitSeconds * static_cast<double>(trees.hits.size());
+    taken.hits[tile].first_hit = std::exchange(trees.first_hit, {});
+    taken.hits[tile].hits = std::exchange(trees.hits, {});
+  }
+  option.without = file_bytes(content, identity, part);
+  return option;
+}
+
+/// `areas`: see fit_to_disk(). Comes before the hits are taken.
+Optional take_tunnels(CacheContent& content, const CacheIdentity& identity, const PartFile& part,
+                      std::span<const double> areas, Taken& taken) {
+  Optional option{part, file_bytes(content, identity, part)};
+  const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
+  for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
+    option.seconds += kTunnelSeconds * static_cast<double>(content.trees[tile].hits.size()) * areas[tile];
+    taken.tunnels[tile] = std::exchange(content.tunnels[tile], {});
+  }
+  option.without = file_bytes(content, identity, part);
+  return option;
+}
+
+void put_back(CacheContent& content, const PartFile& part, Taken& taken) {
+  const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
+  for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
+    if (part.part == Part::tunnels) {
+      content.tunnels[tile] = std::move(taken.tunnels[tile]);
+      continue;
+    }
+    content.trees[tile].first_hit = std::move(taken.hits[tile].first_hit);
+    content.trees[tile].hits = std::move(taken.hits[tile].hits);
   }
 }
 
 }  // namespace
 
-void fit_to_disk(CacheContent& content, std::uint64_t bytes) {
+void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const double> tunnel_areas) {
   const CacheIdentity identity{content.scene_hash, options_hash(content)};
   const std::vector<PartFile> parts = parts_of(content);
-  std::vector<std::uint64_t> others(parts.size(), 0);
-  std::vector<GroupSize> groups(cache_group_count(content.camera, content.samples));
-  std::vector<TileTrees> taken(content.trees.size());
-  parallel_for(parts.size(), [&](std::size_t i) {
-    if (parts[i].part == Part::trees)
-      groups[parts[i].group] = take_hits(content, identity, parts[i].group, taken);
-    else
-      others[i] = encode(parts[i], content, identity).size();
-  });
+  std::vector<Optional> options(parts.size());
+  Taken taken{std::vector<TileTrees>(content.trees.size()), std::vector<TileTunnels>(content.tunnels.size())};
+  const auto for_each = [&](Part kind, const auto& take) {
+    parallel_for(parts.size(), [&](std::size_t i) {
+      if (parts[i].part == kind) options[i] = take(parts[i]);
+    });
+  };
+  for_each(Part::tunnels,
+           [&](const PartFile& part) { return take_tunnels(content, identity, part, tunnel_areas, taken); });
+  for_each(Part::trees, [&](const PartFile& part) { return take_hits(content, identity, part, taken); });
   constexpr std::uint64_t kManifestBytes = 4096, kManifestFileBytes = 256;  // at most
-  std::uint64_t least =
-      std::accumulate(others.begin(), others.end(), kManifestBytes + kManifestFileBytes * parts.size());
-  for (const GroupSize& group : groups) least += group.without;
+  std::uint64_t least = kManifestBytes + kManifestFileBytes * parts.size();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const bool is_optional = parts[i].part == Part::trees || parts[i].part == Part::tunnels;
+    least += is_optional ? options[i].without : file_bytes(content, identity, parts[i]);
+  }
   if (least > bytes)
     throw ResourceError("--disk", "this cache needs at least " + std::to_string((least + 1023) >> 10) + "K");
-  std::ranges::stable_sort(groups, std::greater(), &GroupSize::weight);
+  std::ranges::stable_sort(options, std::greater(), &Optional::weight);
   std::uint64_t left = bytes - least;
-  for (const GroupSize& group : groups) {
-    if (group.saved() > left) continue;
-    left -= group.saved();
-    put_back_hits(content, group.group, taken);
+  for (const Optional& option : options) {
+    if (option.with == 0 || option.saved() > left) continue;
+    left -= option.saved();
+    put_back(content, option.part, taken);
   }
 }
 
 namespace {
 
+/// Of tunnels: `manifest` has the files that they are bound to.
 CacheFile write_part(const std::filesystem::path& folder, const PartFile& part, const CacheContent& content,
-                     const CacheIdentity& identity) {
-  const Bytes bytes = encode(part, content, identity);
+                     const Manifest& manifest) {
+  const Bytes bytes = part.part == Part::tunnels
+                          ? encode_tunnels(content, part.group, manifest.identity, hashes_bound_to(manifest, part.group))
+                          : encode(part, content, manifest.identity);
   CacheFile file{stem(part), bytes.size(), hash128(bytes)};
   if (part.part != Part::look) file.name += file.hash + ".rlk";
   write_file(folder / file.name, bytes);
@@ -111,16 +147,26 @@ bool may_replace(const std::filesystem::path& path, OldCache old, const std::str
 
 void write_cache(const std::filesystem::path& path, const CacheContent& content, OldCache old) {
   Manifest manifest = manifest_of(content);
+  manifest.pieces = count_pieces(content);
   if (old == OldCache::replace) static_cast<void>(may_replace(path, old, ""));
   StagedFolder folder(path);
   std::string text;
   folder.fill([&] {
-    make_folders(folder.path() / kTreesFolder);
     const std::vector<PartFile> parts = parts_of(content);
-    manifest.files.resize(parts.size());
-    parallel_for(parts.size(), [&](std::size_t i) {
-      manifest.files[i] = write_part(folder.path(), parts[i], content, manifest.identity);
+    for (const std::string_view inner : kInnerFolders)
+      if (std::ranges::any_of(parts, [&](const PartFile& part) { return stem(part).starts_with(inner); }))
+        make_folders(folder.path() / inner);
+    const auto has_tunnels = [](const PartFile& part) { return part.part == Part::tunnels; };
+    const auto others = static_cast<std::size_t>(std::ranges::find_if(parts, has_tunnels) - parts.begin());
+    manifest.files.resize(others);
+    parallel_for(others, [&](std::size_t i) {
+      manifest.files[i] = write_part(folder.path(), parts[i], content, manifest);
     });
+    std::vector<CacheFile> of_tunnels(parts.size() - others);
+    parallel_for(of_tunnels.size(), [&](std::size_t i) {
+      of_tunnels[i] = write_part(folder.path(), parts[others + i], content, manifest);
+    });
+    std::ranges::move(of_tunnels, std::back_inserter(manifest.files));
     std::sort(manifest.files.begin(), manifest.files.end(),
               [](const CacheFile& a, const CacheFile& b) { return a.name < b.name; });
     text = manifest_text(manifest);

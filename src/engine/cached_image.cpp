@@ -10,7 +10,10 @@
 #include "base/json.h"
 #include "base/parallel.h"
 #include "engine/image_pieces.h"
+#include "engine/path_classes.h"
+#include "engine/regions.h"
 #include "engine/render.h"
+#include "trace/object_levels.h"
 #include "trace/path_cursor.h"
 
 namespace relook {
@@ -43,7 +46,7 @@ std::vector<std::uint64_t> triangles_hit(const Scene& scene, std::span<const std
 
 }  // namespace
 
-CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash) {
+CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash, TunnelRecord tunnels) {
   CacheContent content;
   content.document = state.document();
   content.pyramids = state.pyramids();
@@ -58,7 +61,20 @@ CacheContent cache_content(const SceneState& state, Image image, std::string sce
   content.paths = std::move(image.paths);
   content.trees = std::move(image.trees);
   content.sample_colors = std::move(image.sample_colors);
+  content.storage.tunnels = tunnels.shape;
+  content.around_tiles = std::move(tunnels.around);
+  content.tunnels = std::move(tunnels.of_tiles);
   return content;
+}
+
+std::vector<double> tunnel_areas(const SceneState& state, const CacheContent& content) {
+  const std::vector<LightEnd> lights = light_ends(state.scene());
+  std::vector<double> areas;
+  double sum = 0;
+  for (const Sections& tunnel : content.around_tiles) sum += areas.emplace_back(surface_area(tunnel, lights));
+  const double mean = sum / static_cast<double>(areas.size());
+  for (double& area : areas) area = mean > 0 ? area / mean : 1;
+  return areas;
 }
 
 HitCheck::HitCheck(const Scene& scene, const PathTable& paths, std::uint32_t shadow_bits) {
@@ -125,6 +141,32 @@ CacheAnswer trace_again(const Scene& scene, const CacheLosses& losses, Image& im
 
 }  // namespace
 
+namespace {
+
+/// Builds the lost tunnels of an image whose trees are whole.
+void build_again(const SceneState& state, const Image& image, const CacheLosses& losses, CacheContent& content) {
+  if (losses.tunnels.empty()) return;
+  const StorageOptions& storage = content.storage;
+  const std::vector<ObjectId> atoms = storage.atoms > 0 ? atoms_of(state, storage.atoms) : std::vector<ObjectId>();
+  const RayScene rays(state.scene());
+  ObjectLevels objects(rays, {});
+  const GrowScene grow{rays, nullptr, image.view.max_depth, image.view.shadow_bits, &objects};
+  PathClasses classes(storage.atoms > 0);
+  classes.extend(image.paths, grow.layout(), atoms);
+  const auto class_of = [&](PathId path) { return classes.of(path); };
+  ImageRegions regions({.tunnels = storage.tunnels.of_region,
+                        .atoms = storage.atoms,
+                        .tunnel_levels = storage.tunnels.dropped_levels,
+                        .most_tunnels = storage.tunnels.of_image});
+  regions.build_tunnels(image, grow, class_of);
+  for (const std::size_t tile : losses.tunnels) {
+    content.around_tiles[tile] = regions.around(tile);
+    content.tunnels[tile] = regions.tunnels(tile);
+  }
+}
+
+}  // namespace
+
 CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   if (losses.empty()) return {};
   CacheContent scene_part;
@@ -138,6 +180,7 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   if (answer.fault != CacheFault::none) return answer;
   Image image = take_image(content);
   answer = trace_again(state->scene(), losses, image);
+  if (answer.fault == CacheFault::none) build_again(*state, image, losses, content);
   put_back(std::move(image), content);
   return answer;
 }
@@ -151,6 +194,7 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
   std::optional<HitCheck> check;
   std::atomic<bool> is_broken = false;
   CacheUsers users;
+  users.tunnels = mends ? TunnelReading::skip : TunnelReading::check;
   users.scene = [&](CacheContent& scene_part) { of_scene = compile(scene_part, state); };
   if (residency != nullptr)
     users.tile = [&](CacheContent& so_far, std::size_t tile) {
@@ -181,7 +225,8 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
     }
   }
   if (is_broken) return {CacheFault::damaged, "trees", "a hit names a triangle that its object does not have"};
-  opened = {std::move(state), std::move(image), std::move(content.scene_hash), std::move(losses)};
+  auto tunnels = StoredTunnels::of_cache(path, image.paths.size());
+  opened = {std::move(state), std::move(image), std::move(content.scene_hash), std::move(losses), std::move(tunnels)};
   return {};
 }
 

@@ -5,13 +5,19 @@
 
 #include "cache/cache.h"
 #include "cache/residency.h"
+#include "cache/stored_tunnels.h"
 #include "engine/image.h"
+#include "engine/render.h"
 #include "scene/state.h"
 
 namespace relook {
 
-/// Moves `image` into a cache's content.
-[[nodiscard]] CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash);
+/// Moves `image` into a cache's content, with tunnels or without.
+[[nodiscard]] CacheContent cache_content(const SceneState& state, Image image, std::string scene_hash,
+                                         TunnelRecord tunnels = {});
+
+/// By tile, of a cache with tunnels: their surface area relative to the mean, as PieceFacts has it.
+[[nodiscard]] std::vector<double> tunnel_areas(const SceneState& state, const CacheContent& content);
 
 /// Can hits belong to a scene? They may name triangles that do not exist.
 class HitCheck {
@@ -23,8 +29,8 @@ class HitCheck {
   std::vector<std::vector<std::uint64_t>> most_;  // [path][hit] triangles of the object
 };
 
-/// Traces the tiles of `losses` again, so that `content` is as it was written, byte for byte. Returns what keeps the
-/// scene from being compiled.
+/// Traces the tiles of `losses` again and builds tunnels anew, so that `content` is as it was written, byte for byte.
+/// Returns what keeps the scene from being compiled.
 [[nodiscard]] CacheAnswer make_good(CacheContent& content, const CacheLosses& losses);
 
 /// What a replay starts from.
@@ -33,9 +39,10 @@ struct OpenedCache {
   Image image;
   std::string scene_hash;
   CacheLosses losses;  // made good
+  std::shared_ptr<StoredTunnels> tunnels;  // null: the cache has none
 };
-/// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults. On a fault
-/// `opened` is untouched. `residency`: tiles leave memory for it as they are read; null: all are kept.
+/// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults, those of
+/// tunnels, which are not read otherwise, too. On a fault `opened` is untouched. `residency`: tiles leave memory for it as they are read; null: all are kept.
 [[nodiscard]] CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened,
                                      Residency* residency = nullptr);
 

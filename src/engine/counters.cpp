@@ -23,6 +23,7 @@ Counters& Counters::operator+=(const Counters& other) {
   shadow_updates += other.shadow_updates;
   object_rays += other.object_rays;
   color_trees_evaluated += other.color_trees_evaluated;
+  tunnels_read += other.tunnels_read;
   evicted += other.evicted;
   rebuilt += other.rebuilt;
   reloaded += other.reloaded;

@@ -22,6 +22,7 @@ struct Counters {
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree
   std::uint64_t color_trees_evaluated = 0;
+  std::uint64_t tunnels_read = 0;  // tiles whose tunnels the cache holds and that were used for the first time
   Moves evicted, rebuilt, reloaded;
 
   Counters& operator+=(const Counters& other);

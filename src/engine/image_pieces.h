@@ -16,9 +16,6 @@ void add_image_pieces(Residency& residency, std::vector<TileTrees>& trees, std::
 /// 4, 8 and 16 took the same time, 1 and 64 longer.
 inline constexpr std::size_t kTilesAhead = 8;
 
-/// To find a hit again, by a ray against one object, until it has been measured.
-inline constexpr double kHitSeconds = 5e-7;
-
 /// A tile's trees have changed. Without hits they are missing. `hit_seconds`: to find a hit again.
 void note_trees(Residency& residency, std::size_t tile, const TileTrees& trees, double hit_seconds = kHitSeconds);
 void note_colors(Residency& residency, std::size_t tile, const std::vector<Rgba>& colors);

@@ -5,15 +5,16 @@
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "engine/sampling.h"
+#include "region/cell_tunnels.h"
 
 namespace relook {
 namespace {
 
-/// Encloses the ray trees of a tile's leaves, expanded from their stored form.
-class LeafTunnels {
+/// Encloses the ray trees of a tile, expanded from their stored form.
+class TreeEncloser {
  public:
-  LeafTunnels(const Image& image, const GrowScene& grow, std::size_t tile, std::size_t most, const ClassOf& class_of,
-              Residency::Lease trees_lease)
+  TreeEncloser(const Image& image, const GrowScene& grow, std::size_t tile, std::size_t most, const ClassOf& class_of,
+               Residency::Lease trees_lease)
       : lease_(std::move(trees_lease)),
         image_(image),
         grow_(grow),
@@ -23,14 +24,20 @@ class LeafTunnels {
         class_of_(class_of),
         set_(most) {}
 
-  std::span<const Tunnel> of(std::uint32_t leaf) {
+  /// The tunnels around the trees of a part of the tile.
+  std::span<const Tunnel> of(const RegionSquare& square) {
     set_.clear();
-    const RegionSquare square = square_of(leaf);
     const std::uint32_t width = rect_.x1 - rect_.x0, samples = image_.view.samples;
     for (std::uint32_t y = square.y; y < std::min(square.y + square.size, rect_.y1 - rect_.y0); ++y)
       for (std::uint32_t x = square.x; x < std::min(square.x + square.size, width); ++x)
         for (std::uint32_t k = 0; k < samples; ++k) add((y * width + x) * samples + k);
     return set_.tunnels();
+  }
+  /// One around all of the tile's.
+  Sections around() {
+    Sections all;
+    for (const Tunnel& tunnel : of({0, 0, kTileSize})) enclose(all, tunnel.sections);
+    return all;
   }
 
  private:
@@ -55,8 +62,6 @@ class LeafTunnels {
   std::vector<History> histories_;
 };
 
-Leaves all_leaves() { return Leaves().set(); }
-
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -73,61 +78,129 @@ void ImageRegions::build_groups(const Image& image, const ClassOf& class_of) {
   parallel_for(groups_.size(), [&](std::size_t tile) { groups_[tile] = groups_of(image, tile, class_of); });
 }
 
+void ImageRegions::offer(std::shared_ptr<StoredTunnels> stored, std::size_t tiles) {
+  stored_ = std::move(stored);
+  stale_.assign(stored_ ? tiles : 0, {});
+}
+
+void ImageRegions::forget_stored() {
+  if (has_tunnels()) return;  // what is used of them is kept up to date
+  offer(nullptr, 0);
+}
+
+bool ImageRegions::may_have_tunnels(const Image& image) const {
+  return !relook::cell_levels(options_.shape(), image.frame.width, image.frame.height).empty();
+}
+
 void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
-  if (options_.tunnels == 0) return;
+  cell_levels_ = cell_levels(options_.shape(), image.frame.width, image.frame.height);
+  if (cell_levels_.empty()) return;
+  if (has_tunnels()) offer(nullptr, 0);  // these have been used up
   add_pieces(image.trees.size());
-  parallel_for(tunnels_.size(), [&](std::size_t tile) {
-    const auto start = Clock::now();
-    LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
-    TileTunnels built =
-        TileTunnels().rebuilt(all_leaves(), options_.tunnels, [&](std::uint32_t leaf) { return leaves.of(leaf); });
-    const double seconds = seconds_since(start);
-    keep(tile, std::move(built), seconds);
+  lights_ = light_ends(grow.scene.scene());
+  mean_area_ = 0;
+  const auto take_or_build = [&](std::size_t tile) {
+    if (!take_stored(tile)) build(image, grow, tile, class_of);
+  };
+  parallel_for(tunnels_.size(), take_or_build);
+  measure_areas();
+  parallel_for(stale_.size(), [&](std::size_t tile) {
+    if (stale_[tile].any()) static_cast<void>(update(image, grow, tile, stale_[tile], class_of));
   });
+  stale_.clear();
   const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
   image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
                                  [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
 }
 
+bool ImageRegions::take_stored(std::size_t tile) {
+  if (!stored_ || residency_ == nullptr || stale_[tile].all()) return false;
+  std::optional<Sections> around = stored_->around(tile);
+  if (!around) return false;
+  around_[tile] = std::move(*around);
+  const std::uint64_t bytes = stored_->bytes(tile);
+  // About one section a hit, in leaves and above.
+  const double seconds = kTunnelSeconds * static_cast<double>(bytes) / sizeof(TunnelSection);
+  if (bytes > 0) residency_->set_stored(PieceKind::tunnels, tile, bytes, seconds, 1);
+  return true;
+}
+
 void ImageRegions::add_pieces(std::size_t tiles) {
   tunnels_.assign(tiles, {});
-  tile_sections_.assign(tiles, {});
+  around_.assign(tiles, {});
   if (residency_ == nullptr) return;
   PieceHandler handler;
   handler.pack = [this](std::size_t tile) { return tunnels_[tile].packed(); };
   handler.unpack = [this](std::size_t tile, BytesView bytes) { tunnels_[tile] = TileTunnels::unpacked(bytes); };
   handler.drop = [this](std::size_t tile) { tunnels_[tile] = {}; };
+  handler.fetch = [this](std::size_t tile) -> std::optional<std::uint64_t> {
+    std::optional<TileTunnels> read = stored_->read(tile);
+    if (!read) return std::nullopt;
+    tunnels_[tile] = std::move(*read);
+    return tunnels_[tile].bytes();
+  };
   handler.may_be_missing = true;
   residency_->add_kind(PieceKind::tunnels, tiles, std::move(handler));
 }
 
-void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, std::optional<double> seconds) {
-  give_back(tile_sections_[tile]);
-  for (std::size_t k = 0; k < tunnels.count(kRoot); ++k)
-    enclose(tile_sections_[tile], tunnels.tunnel(kRoot, k).sections);
-  tunnels_[tile] = std::move(tunnels);
-  if (residency_ != nullptr) residency_->set(PieceKind::tunnels, tile, tunnels_[tile].bytes(), seconds);
+void ImageRegions::build(const Image& image, const GrowScene& grow, std::size_t tile, const ClassOf& class_of) {
+  const auto start = Clock::now();
+  const TileGrid grid(cell_levels_[tile]);
+  TreeEncloser trees(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
+  TileTunnels built = TileTunnels::built(grid, options_.tunnels,
+                                         [&](std::uint32_t cell) { return trees.of(grid.square_of(cell)); });
+  Sections around = grid.regions() > 0 ? relook::around(built) : trees.around();
+  const double seconds = seconds_since(start);
+  keep(tile, std::move(built), std::move(around), seconds);
 }
 
-void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const { enclose(tunnel, tile_sections_[tile]); }
+void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, Sections around, std::optional<double> seconds) {
+  around_[tile] = std::move(around);
+  tunnels_[tile] = std::move(tunnels);
+  if (residency_ != nullptr)
+    residency_->set(PieceKind::tunnels, tile, tunnels_[tile].bytes(), seconds, relative_area(tile));
+}
+
+void ImageRegions::measure_areas() {
+  if (residency_ == nullptr || !residency_->is_watched()) return;
+  double sum = 0;
+  for (const Sections& tunnel : around_) sum += surface_area(tunnel, lights_);
+  mean_area_ = sum / static_cast<double>(around_.size());
+  for (std::size_t tile = 0; tile < around_.size(); ++tile)
+    residency_->set_surface_area(PieceKind::tunnels, tile, relative_area(tile));
+}
+
+double ImageRegions::relative_area(std::size_t tile) const {
+  return mean_area_ > 0 ? surface_area(around_[tile], lights_) / mean_area_ : 1;
+}
+
+void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const { enclose(tunnel, around_[tile]); }
 
 void ImageRegions::update_image(const std::vector<std::size_t>& tiles) {
   if (!has_tunnels()) return;
   image_tunnels_.update(tiles, [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
 }
 
-void ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
+bool ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
                           const ClassOf& class_of) {
   if (has_groups()) groups_[tile] = groups_of(image, tile, class_of);
-  if (!has_tunnels()) return;
+  if (!has_tunnels()) {
+    if (stored_) stale_[tile] |= changed;
+    return false;
+  }
   const Residency::Lease tunnels_lease = lease(PieceKind::tunnels, tile);
-  const auto start = Clock::now();
-  LeafTunnels leaves(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
-  const bool is_new = tunnels_[tile].empty();
-  TileTunnels rebuilt = tunnels_[tile].rebuilt(is_new ? all_leaves() : changed, options_.tunnels,
-                                               [&](std::uint32_t leaf) { return leaves.of(leaf); });
-  const double seconds = seconds_since(start);
-  keep(tile, std::move(rebuilt), is_new ? std::optional(seconds) : std::nullopt);
+  const bool is_missing = tunnels_[tile].empty();
+  const TileGrid grid(cell_levels_[tile]);
+  if (is_missing || grid.regions() == 0) {
+    build(image, grow, tile, class_of);
+    return is_missing;
+  }
+  TreeEncloser trees(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
+  TileTunnels rebuilt = tunnels_[tile].rebuilt(changed, options_.tunnels,
+                                               [&](std::uint32_t cell) { return trees.of(grid.square_of(cell)); });
+  Sections around = relook::around(rebuilt);
+  keep(tile, std::move(rebuilt), std::move(around), std::nullopt);
+  return false;
 }
 
 std::size_t ImageRegions::group_bytes() const {

@@ -7,6 +7,8 @@
 
 #include "engine/counters.h"
 #include "engine/image.h"
+#include "region/tile_tunnels.h"
+#include "region/tunnel_shape.h"
 #include "scene/scene.h"
 
 namespace relook {
@@ -22,9 +24,18 @@ struct RenderStats {
 /// The frame of `scene` as it is now.
 [[nodiscard]] Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats,
                            const Progress& progress = {});
+/// Tunnels that are built while an image's ray trees are traced.
+struct TunnelRecord {
+  TunnelShape shape{0, 2, std::nullopt};
+  std::vector<ObjectId> atoms;        // see atoms_of(); empty without atoms
+  std::vector<Sections> around;       // [tiles] around all tunnels of each; empty: the shape allows none
+  std::vector<TileTunnels> of_tiles;  // [tiles]
+};
+
 /// The same frame, bit for bit, with paths, ray trees and sample colours kept. Ids do not depend on the thread count.
+/// `tunnels`: null, or what to build beside.
 [[nodiscard]] Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats,
-                               const Progress& progress = {});
+                               const Progress& progress = {}, TunnelRecord* tunnels = nullptr);
 /// Traces some tiles of `image` (increasing) again: their paths, ray trees, sample colours and pixels. With the scene
 /// that the image was made from it is afterwards as preprocess() made it, provided that its path table is that image's,
 /// or empty and `tiles` are all.

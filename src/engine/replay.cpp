@@ -36,10 +36,11 @@ struct Replayer::Impl {
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
   std::vector<ShownSamples> on_top;   // by tile, while objects are lifted: where they are seen
 
-  Impl(SceneState s, Image i, const RegionOptions& options, std::unique_ptr<Residency> pieces)
+  Impl(SceneState s, Image i, const RegionOptions& options, std::unique_ptr<Residency> pieces,
+       std::shared_ptr<StoredTunnels> tunnels)
       : state(std::move(s)),
         rays(state.scene()),
-        owned_residency(with_tracking(std::move(pieces), options)),
+        owned_residency(with_tracking(std::move(pieces), options.ray_trees < 1 || tunnels)),
         stored(std::move(i), state.scene().light_order, atoms(options.atoms), options, residency),
         compressed(image().trees.size(),
                    static_cast<std::uint64_t>(static_cast<double>(stored.samples()) * options.color_trees)) {
@@ -48,11 +49,12 @@ struct Replayer::Impl {
                            compressed.list_victims(residency.policy(), residency.change(), victims);
                          });
     stored.forget_hits(options.ray_trees);
+    if (tunnels && options.has_tunnels_of(tunnels->shape())) stored.offer_tunnels(std::move(tunnels));
   }
 
-  static std::unique_ptr<Residency> with_tracking(std::unique_ptr<Residency> pieces, const RegionOptions& options) {
+  static std::unique_ptr<Residency> with_tracking(std::unique_ptr<Residency> pieces, bool may_miss_pieces) {
     if (!pieces) pieces = std::make_unique<Residency>(ResidencyOptions());
-    if (options.ray_trees < 1) pieces->track();
+    if (may_miss_pieces) pieces->track();
     return pieces;
   }
 
@@ -100,7 +102,7 @@ struct Replayer::Impl {
     ChangeBoxes boxes;
     const std::vector<LightEnd> ends = light_ends(state.scene());
     const bool uses_tunnels =
-        stored.regions().options().tunnels > 0 && change.touches_segments() && !change.rays.lights_changed;
+        stored.regions().may_have_tunnels(image()) && change.touches_segments() && !change.rays.lights_changed;
     if (uses_tunnels) {
       boxes = boxes_of(change, rays, absent);
       boxes.count_blockers = image().view.shadow_bits > 0;
@@ -161,7 +163,8 @@ struct Replayer::Impl {
       const TileWork& work = works[tile];
       result.dependent[tile] |= work.by_path;
       result.touched[tile] |= work.leaves & ~work.by_path;
-      for (const LeafTouches& leaf : work.touched) result.touched[tile].set(leaf.leaf);
+      for (const CellTouches& touches : work.touched)
+        for_each_leaf_of(work.tunnel_grid, touches.cell, [&](std::uint32_t leaf) { result.touched[tile].set(leaf); });
       counters.by_groups += work.by_groups;
       counters.by_tunnels += work.by_tunnels;
     }
@@ -292,6 +295,8 @@ struct Replayer::Impl {
     const auto of = [](const auto& counts, PieceKind kind) { return counts[static_cast<std::size_t>(kind)]; };
     counters.evicted += {of(moves.evicted, PieceKind::ray_trees), of(moves.evicted, PieceKind::sample_colors),
                          moves.others_evicted, of(moves.evicted, PieceKind::tunnels)};
+    counters.tunnels_read += of(moves.fetched, PieceKind::tunnels);
+    counters.rebuilt.tunnels += stored.take_rebuilt_tunnels();
     counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees), of(moves.reloaded, PieceKind::sample_colors), 0,
                           of(moves.reloaded, PieceKind::tunnels)};
     if (counters.ray_tests + counters.ray_tests_culled == 0) counters.ray_tests_culled = stored.segments();  // no pass
@@ -395,8 +400,10 @@ struct Replayer::Impl {
   }
 };
 
-Replayer::Replayer(SceneState state, Image image, const RegionOptions& options, std::unique_ptr<Residency> residency)
-    : impl_(std::make_unique<Impl>(std::move(state), std::move(image), options, std::move(residency))) {}
+Replayer::Replayer(SceneState state, Image image, const RegionOptions& options, std::unique_ptr<Residency> residency,
+                   std::shared_ptr<StoredTunnels> tunnels)
+    : impl_(std::make_unique<Impl>(std::move(state), std::move(image), options, std::move(residency),
+                                   std::move(tunnels))) {}
 Replayer::~Replayer() = default;
 Replayer::Replayer(Replayer&&) noexcept = default;
 

@@ -69,6 +69,8 @@ struct StructureOptions {
   std::optional<std::uint64_t> disk_bytes;  // of the spill file
   double ray_trees_percent = 100, color_trees_percent = 100;
   std::uint32_t tunnels = 1, groups = 4, atoms = 0;
+  std::uint32_t tunnel_levels = 2;            // the lowest levels without tunnels
+  std::optional<std::uint64_t> most_tunnels;  // of the image; none: no limit
   std::vector<std::string> params;  // pointers to parameters that are subject to change; empty: any may be
 };
 

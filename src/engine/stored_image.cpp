@@ -151,7 +151,11 @@ void StoredImage::classify_paths(const GrowScene& scene) {
   classes_.clear();
   index_paths();
   regions_.build_groups(image_, class_of());
-  if (regions_.has_tunnels() && regions_.options().tunnels > 1) build_tunnels(scene);
+  if (regions_.options().tunnels < 2) return;  // not for one path
+  if (regions_.has_tunnels())
+    build_tunnels(scene);
+  else
+    regions_.forget_stored();
 }
 
 void StoredImage::index_paths() {
@@ -183,6 +187,7 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
     image_.paths = PathTable();
     index_.clear();
     classes_.clear();
+    regions_.forget_stored();
   }
   lights_ = scene.scene.scene().light_order;
   std::vector<std::vector<PathId>> ids(updates.size());
@@ -203,7 +208,7 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
     const TileUpdate& update = updates[k];
     if (update.packed.empty()) return;
     count_segments(update.tile);
-    regions_.update(image_, scene, update.tile, leaves_of(update.tile, update.packed), class_of());
+    rebuilt_tunnels_ += regions_.update(image_, scene, update.tile, leaves_of(update.tile, update.packed), class_of());
   });
   regions_.update_image(changed);
   segments_ = 0;
@@ -215,7 +220,7 @@ void StoredImage::bring_back_tunnels(const std::vector<TileUpdate>& updates, con
   parallel_for(updates.size(), [&](std::size_t k) {
     const TileUpdate& update = updates[k];
     if (update.missed_tunnels && update.packed.empty() && residency_.is_worth_room(PieceKind::tunnels, update.tile, 0))
-      regions_.update(image_, scene, update.tile, {}, class_of());
+      rebuilt_tunnels_ += regions_.update(image_, scene, update.tile, {}, class_of());
   });
 }
 

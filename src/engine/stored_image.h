@@ -51,6 +51,8 @@ class StoredImage {
   }
   /// After a change, perhaps of the node hierarchy. `scene`: in which the trees hold.
   void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene);
+  /// Tunnels of the image as it is now. Requires: the residency is watched.
+  void offer_tunnels(std::shared_ptr<StoredTunnels> stored) { regions_.offer(std::move(stored), image_.trees.size()); }
   /// Requires: the trees hold in `scene`.
   void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
 
@@ -70,6 +72,8 @@ class StoredImage {
   void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
   /// Of tiles that missed theirs and have no changed trees, which keep_paths() sees to. `scene`: in which trees hold.
   void bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene);
+  /// Tiles whose tunnels were missing and have been built again since the last call.
+  [[nodiscard]] std::uint64_t take_rebuilt_tunnels() { return rebuilt_tunnels_.exchange(0); }
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
   void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
   /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
@@ -99,6 +103,7 @@ class StoredImage {
   std::vector<std::uint64_t> tile_segments_;
   std::vector<std::uint8_t> stays_without_hits_;   // by tile
   std::vector<std::uint32_t> found_again_;         // by tile: samples, since its hits have been missing
+  std::atomic<std::uint64_t> rebuilt_tunnels_ = 0;
   std::atomic<double> hit_seconds_ = kHitSeconds;  // measured as hits are found again
   std::uint64_t segments_ = 0, samples_ = 0;
   std::size_t compact_paths_;  // size of the path table when it last held no unused paths

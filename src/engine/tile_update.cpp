@@ -27,8 +27,10 @@ class TileUpdater {
 
   TileUpdate update(const TileWork& work) {
     tests_all_ = work.tests_all;
-    result_.missed_tunnels = work.tests_all && p_.tunnel_test != nullptr;
-    for (const LeafTouches& leaf : work.touched) by_leaf_[leaf.leaf] = &leaf;
+    result_.missed_tunnels = work.misses_tunnels;
+    tunnel_grid_ = work.tunnel_grid;
+    if (!work.touched.empty()) by_cell_.resize(tunnel_grid_.cells());
+    for (const CellTouches& touches : work.touched) by_cell_[touches.cell] = &touches;
     for_each_sample(rect_, p_.image.view, work.leaves,
                     [&](std::uint32_t sample, std::uint32_t leaf) { update_sample(sample, leaf); });
     flush();
@@ -39,7 +41,7 @@ class TileUpdater {
   void update_sample(std::uint32_t sample, std::uint32_t leaf) {
     const PathId path = trees_.paths[sample];
     const std::uint8_t task = p_.tasks.of_path[path.index()];
-    const Touches* touches = by_leaf_[leaf] != nullptr ? by_leaf_[leaf]->of(p_.classes.of(path)) : nullptr;
+    const Touches* touches = touches_of(sample, path);
     if (task == 0 && touches == nullptr && !tests_all_) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     bool update = (task & kUpdateTree) != 0 || tests_all_;
@@ -65,6 +67,14 @@ class TileUpdater {
     roots_.push_back(root);
     result_.shaded.push_back(sample);
     if (roots_.size() == chunk_samples(p_.grow.layout().lights)) flush();
+  }
+
+  /// What to test of a sample's tree; null: nothing.
+  [[nodiscard]] const Touches* touches_of(std::uint32_t sample, PathId path) const {
+    if (by_cell_.empty()) return nullptr;
+    const std::uint32_t pixel = sample / p_.image.view.samples;
+    const CellTouches* touches = by_cell_[tunnel_grid_.cell_of(pixel, rect_.x1 - rect_.x0)];
+    return touches != nullptr ? touches->of(p_.classes.of(path)) : nullptr;
   }
 
   /// Hits that are not kept are found first where the tree may be compared with the scene.
@@ -110,7 +120,8 @@ class TileUpdater {
   bool tests_all_ = false;
   PrimaryRays primaries_;
   Shader& shader_;
-  std::array<const LeafTouches*, kLeaves> by_leaf_{};
+  TileGrid tunnel_grid_ = kLeafGrid;
+  std::vector<const CellTouches*> by_cell_;  // [cells of the tunnels] null: not touched; empty: none is
   const Touches no_touches_;
   Leaves last_changed_;  // leaves whose last updated tree has changed
   TreeBlock& block_;
@@ -140,13 +151,17 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
   work.leaves = work.by_path;
   if (pass.change.touches_segments() && pass.near_tiles[tile]) {
     const auto lease = pass.residency.use(PieceKind::tunnels, tile);
-    if (pass.regions.tunnels(tile).empty()) {
+    const TileTunnels& tunnels = pass.regions.tunnels(tile);
+    work.misses_tunnels = tunnels.empty();
+    if (tunnels.empty() || tunnels.grid().regions() == 0) {
       work.leaves.set();
       work.tests_all = true;
       return work;
     }
-    find_touched_leaves(pass.regions.tunnels(tile), *pass.tunnel_test, work.touched, work.by_tunnels);
-    for (const LeafTouches& leaf : work.touched) work.leaves.set(leaf.leaf);
+    work.tunnel_grid = tunnels.grid();
+    find_touched_cells(tunnels, *pass.tunnel_test, work.touched, work.by_tunnels);
+    for (const CellTouches& touches : work.touched)
+      for_each_leaf_of(work.tunnel_grid, touches.cell, [&](std::uint32_t leaf) { work.leaves.set(leaf); });
   }
   return work;
 }

@@ -17,9 +17,11 @@ class Residency;
 struct TileWork {
   Leaves leaves;                     // with samples that the change may reach
   Leaves by_path;                    // of these, what the paths tell
-  std::vector<LeafTouches> touched;  // of these, what tunnels tell about their segments
+  TileGrid tunnel_grid = kLeafGrid;
+  std::vector<CellTouches> touched;  // of these, what tunnels tell about their segments
   RegionCounters by_groups, by_tunnels;
-  bool tests_all = false;  // nothing is known about its segments
+  bool tests_all = false;       // nothing is known about its segments
+  bool misses_tunnels = false;  // there should be some to tell
 };
 
 /// What became of the samples of one tile.
@@ -33,7 +35,7 @@ struct TileUpdate {
   std::vector<Hit> hits;
   std::vector<std::uint32_t> first_hit{0};
   GrowCounters counters;
-  bool missed_tunnels = false;  // there were none to tell what to test
+  bool missed_tunnels = false;  // there should have been some to tell what to test
 };
 
 /// What all tiles of a pass have in common.

@@ -1,6 +1,5 @@
-// The image quadtree inside one tile (paper 3.1): square regions of pixels, from leaves of kLeafSize pixels to the
-// tile. Leaves are the smallest regions that keep anything: the paper drops the two lowest levels, single pixels and
-// squares of two (4.1.3).
+// The image quadtree inside one tile (paper 3.1): square regions of pixels, up to the tile. Groups end at leaves of 4x4
+// pixels; where tunnels end is a choice (4.1.3).
 #pragma once
 #include <array>
 #include <bitset>
@@ -10,47 +9,86 @@
 
 namespace relook {
 
-inline constexpr std::uint32_t kLeafSize = 4;                      // pixels
-inline constexpr std::uint32_t kLeafSide = kTileSize / kLeafSize;  // leaves along a tile
-inline constexpr std::uint32_t kLeaves = kLeafSide * kLeafSide;
-/// Regions of a tile are numbered level by level, leaves first, row by row; the last is the tile itself.
-inline constexpr std::uint32_t kRegions = 341;
-static_assert(kLeaves == 256 && kLeaves + 64 + 16 + 4 + 1 == kRegions);
-inline constexpr std::uint32_t kRoot = kRegions - 1;
-
-using Leaves = std::bitset<kLeaves>;
-
-/// The leaf of a pixel of a tile that is `width` pixels wide; pixels are numbered row by row.
-[[nodiscard]] inline std::uint32_t leaf_of(std::uint32_t pixel, std::uint32_t width) {
-  return pixel / width / kLeafSize * kLeafSide + pixel % width / kLeafSize;
-}
-[[nodiscard]] inline bool is_leaf(std::uint32_t region) { return region < kLeaves; }
-
-/// The four regions that a region above the leaves consists of, row by row.
-[[nodiscard]] inline std::array<std::uint32_t, 4> children_of(std::uint32_t region) {
-  std::uint32_t first = kLeaves, side = kLeafSide / 2, below = 0;
-  while (region >= first + side * side) {
-    below = first;
-    first += side * side;
-    side /= 2;
-  }
-  const std::uint32_t x = (region - first) % side * 2, y = (region - first) / side * 2;
-  const std::uint32_t corner = below + y * side * 2 + x;
-  return {corner, corner + 1, corner + side * 2, corner + side * 2 + 1};
-}
+/// The levels of the quadtree within a tile, by the size of their squares: 2^level pixels.
+inline constexpr std::uint32_t kTileLevel = 6;
+static_assert(kTileSize == 1U << kTileLevel);
 
 /// Side of a region in pixels, and its upper left corner in the tile.
 struct RegionSquare {
   std::uint32_t x = 0, y = 0, size = 0;
 };
-[[nodiscard]] inline RegionSquare square_of(std::uint32_t region) {
-  std::uint32_t first = 0, side = kLeafSide, size = kLeafSize;
-  while (region >= first + side * side) {
-    first += side * side;
-    side /= 2;
-    size *= 2;
+
+/// The regions of a tile from some level up. They are numbered level by level, the lowest first, row by row; the last is
+/// the tile itself. Regions of the lowest level are called cells.
+class TileGrid {
+ public:
+  /// `lowest`: the level of the cells, at most kTileLevel + 1: then there are no regions.
+  constexpr explicit TileGrid(std::uint32_t lowest) : lowest_(lowest) {}
+  [[nodiscard]] constexpr std::uint32_t lowest() const { return lowest_; }
+  [[nodiscard]] constexpr std::uint32_t side() const { return kTileSize >> lowest_; }  // cells along the tile
+  [[nodiscard]] constexpr std::uint32_t cells() const { return side() * side(); }
+  [[nodiscard]] constexpr std::uint32_t regions() const { return (4 * cells() - (cells() > 0 ? 1 : 0)) / 3; }
+  [[nodiscard]] constexpr std::uint32_t root() const { return regions() - 1; }
+  [[nodiscard]] constexpr bool is_cell(std::uint32_t region) const { return region < cells(); }
+
+  /// The four regions that a region above the cells consists of, row by row.
+  [[nodiscard]] std::array<std::uint32_t, 4> children_of(std::uint32_t region) const {
+    std::uint32_t first = cells(), across = side() / 2, below = 0;
+    while (region >= first + across * across) {
+      below = first;
+      first += across * across;
+      across /= 2;
+    }
+    const std::uint32_t x = (region - first) % across * 2, y = (region - first) / across * 2;
+    const std::uint32_t corner = below + y * across * 2 + x;
+    return {corner, corner + 1, corner + across * 2, corner + across * 2 + 1};
   }
-  return {(region - first) % side * size, (region - first) / side * size, size};
+  [[nodiscard]] RegionSquare square_of(std::uint32_t region) const {
+    std::uint32_t first = 0, across = side(), size = 1U << lowest_;
+    while (region >= first + across * across) {
+      first += across * across;
+      across /= 2;
+      size *= 2;
+    }
+    return {(region - first) % across * size, (region - first) / across * size, size};
+  }
+  /// The cell of a pixel of a tile that is `width` pixels wide; pixels are numbered row by row.
+  [[nodiscard]] std::uint32_t cell_of(std::uint32_t pixel, std::uint32_t width) const {
+    return (pixel / width >> lowest_) * side() + (pixel % width >> lowest_);
+  }
+  constexpr bool operator==(const TileGrid&) const = default;
+
+ private:
+  std::uint32_t lowest_;
+};
+
+/// Leaves are what is searched as one: the cells of groups.
+inline constexpr TileGrid kLeafGrid(2);
+inline constexpr std::uint32_t kLeafSize = 1U << kLeafGrid.lowest();  // pixels
+inline constexpr std::uint32_t kLeafSide = kLeafGrid.side();         // leaves along a tile
+inline constexpr std::uint32_t kLeaves = kLeafGrid.cells();
+inline constexpr std::uint32_t kRegions = kLeafGrid.regions();
+static_assert(kLeaves == 256 && kLeaves + 64 + 16 + 4 + 1 == kRegions);
+inline constexpr std::uint32_t kRoot = kLeafGrid.root();
+
+using Leaves = std::bitset<kLeaves>;
+
+/// The leaf of a pixel of a tile that is `width` pixels wide; pixels are numbered row by row.
+[[nodiscard]] inline std::uint32_t leaf_of(std::uint32_t pixel, std::uint32_t width) {
+  return kLeafGrid.cell_of(pixel, width);
+}
+[[nodiscard]] inline bool is_leaf(std::uint32_t region) { return kLeafGrid.is_cell(region); }
+[[nodiscard]] inline std::array<std::uint32_t, 4> children_of(std::uint32_t region) {
+  return kLeafGrid.children_of(region);
+}
+[[nodiscard]] inline RegionSquare square_of(std::uint32_t region) { return kLeafGrid.square_of(region); }
+
+/// Calls visit(leaf) for the leaves that have pixels of a cell of `grid`.
+template <class Visit>
+void for_each_leaf_of(const TileGrid& grid, std::uint32_t cell, const Visit& visit) {
+  const RegionSquare square = grid.square_of(cell);
+  for (std::uint32_t y = square.y / kLeafSize; y * kLeafSize < square.y + square.size; ++y)
+    for (std::uint32_t x = square.x / kLeafSize; x * kLeafSize < square.x + square.size; ++x) visit(y * kLeafSide + x);
 }
 
 /// How a search went through regions: whose contents were looked at, and which were left out with all below them.

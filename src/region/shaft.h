@@ -20,4 +20,7 @@ struct Shaft {
 /// separate the two.
 [[nodiscard]] bool touches(const Shaft& shaft, const Box& box);
 
+/// Square metres. Requires: neither box is empty.
+[[nodiscard]] double surface_area(const Shaft& shaft);
+
 }  // namespace relook

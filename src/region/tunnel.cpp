@@ -153,6 +153,25 @@ std::vector<LightEnd> light_ends(const Scene& scene) {
   return ends;
 }
 
+double surface_area(std::span<const TunnelSection> tunnel, const std::vector<LightEnd>& lights) {
+  Box all;
+  for (const TunnelSection& section : tunnel) all.extendBy(section.points);
+  const float extent = all.isEmpty() ? 0 : all.size().length();
+  double area = 0;
+  for (const TunnelSection& section : tunnel) {
+    if (section.history == kEye) continue;
+    const Box origins = origins_of(tunnel, section);
+    if (!section.points.isEmpty()) area += surface_area({origins, section.points});
+    if (!section.leaving.isEmpty()) area += surface_area(extruded(origins, section.leaving, extent));
+    for (std::size_t light = 0; !section.points.isEmpty() && light < lights.size(); ++light) {
+      if (((section.open | section.blocked) & light_bit(light)) == 0) continue;
+      const LightEnd& end = lights[light];
+      area += surface_area(end.directional ? extruded(section.points, end.end, extent) : Shaft{section.points, end.end});
+    }
+  }
+  return area;
+}
+
 BoxSet box_set(std::vector<Box>& boxes, std::size_t most) {
   BoxSet set;
   for (const Box& box : boxes) set.all.extendBy(box);
