@@ -173,7 +173,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_look_patch(preprocess, arguments);
   add_structures(preprocess, arguments, raw);
   preprocess.add_option("--disk", raw.disk,
-                        "Most disk for the cache, like 20G: ray trees are left out where they are worth the least");
+                        "Most disk for the cache, like 20G: ray trees and tunnels are left out where they are worth the least");
 
   CLI::App& replay = *app.add_subcommand("replay", "Replay journals against a cache: a frame per step and a report");
   add_inputs(replay, arguments, "CACHE JOURNAL", "Cache folder, then journals; -: standard input", 2, kMostJournals);
@@ -199,8 +199,8 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->type_name("POINTER");
   replay
       .add_option("--policy", arguments.structures.policy,
-                  "What leaves memory first: weight (the paper's), lru, size, gdsf")
-      ->check(CLI::IsMember({"weight", "lru", "size", "gdsf"}));
+                  "What leaves memory first: weight (the paper's), plain-weight (without surface area), lru, size, gdsf")
+      ->check(CLI::IsMember({"weight", "plain-weight", "lru", "size", "gdsf"}));
   replay.add_option("--spill", arguments.spill, "Folder for what leaves memory; the run folder")
       ->check(CLI::ExistingDirectory);
   replay.add_option("--disk", raw.disk, "Most disk for what leaves memory, like 20G; 0: it is worked out again");

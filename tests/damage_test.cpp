@@ -13,6 +13,7 @@
 #include "engine/render.h"
 #include "run_program.h"
 #include "test_scenes.h"
+#include "tunnel_caches.h"
 
 namespace relook {
 namespace {
@@ -28,7 +29,7 @@ bool same_image(const CacheContent& a, const CacheContent& b) {
     same = a.trees[tile].paths == b.trees[tile].paths && a.trees[tile].hits == b.trees[tile].hits &&
            a.trees[tile].first_hit == b.trees[tile].first_hit &&
            same_colors(a.sample_colors[tile], b.sample_colors[tile]);
-  return same;
+  return same && a.around_tiles == b.around_tiles && a.tunnels == b.tunnels;
 }
 
 /// A floor, a mirror box and a glass-like card under a light: every kind of path in few bytes.
@@ -52,7 +53,7 @@ class Damage : public testing::Test {
  protected:
   void write(std::uint32_t width, std::uint32_t height, ViewOptions view) {
     const SceneState state = small_scene(width, height);
-    written_ = cache_content(state, preprocessed(state.scene(), view), std::string(32, 'a'));
+    written_ = content_with_tunnels(state, view, {.tunnels = 2});
     write_cache(cache_, written_);
   }
   [[nodiscard]] std::vector<std::filesystem::path> files() const {
@@ -62,9 +63,11 @@ class Damage : public testing::Test {
     std::ranges::sort(files);
     return files;
   }
+  static bool is_of_tunnels(const std::filesystem::path& file) { return file.parent_path().filename() == "tunnels"; }
   static bool is_mendable(const std::filesystem::path& file) {
     const std::string name = file.filename().string();
-    return file.parent_path().filename() == "trees" || name.starts_with("frame-") || name.starts_with("paths-");
+    return is_of_tunnels(file) || file.parent_path().filename() == "trees" || name.starts_with("frame-") ||
+           name.starts_with("paths-");
   }
   /// A damaged cache is mended, to the bit, or refused.
   void expect_mended_or_refused(const std::filesystem::path& file) {
@@ -73,7 +76,7 @@ class Damage : public testing::Test {
     CacheAnswer answer = read_cache(cache_, content, &losses);
     if (answer.fault == CacheFault::none) answer = make_good(content, losses);
     ASSERT_EQ(answer.fault == CacheFault::none, is_mendable(file)) << file << ": " << answer.detail;
-    EXPECT_FALSE(is_mendable(file) && losses.tiles.empty()) << file;
+    EXPECT_FALSE(is_mendable(file) && losses.tiles.empty() && losses.tunnels.empty()) << file;
     if (answer.fault == CacheFault::none) {
       ASSERT_TRUE(same_image(content, written_)) << file;
     }
@@ -209,7 +212,8 @@ TEST_F(Damage, a_replay_says_what_it_traced_again_and_strict_refuses) {
     std::filesystem::rename(file, folder_ / "aside");
     const Json report = replayed("run");
     EXPECT_EQ(report["frames"], sound["frames"]) << file;
-    EXPECT_EQ(report["steps"][0]["rebuilt"]["ray_trees"], 64 * 36) << file;
+    EXPECT_EQ(report["steps"][0]["rebuilt"]["ray_trees"], is_of_tunnels(file) ? 0 : 64 * 36) << file;
+    EXPECT_EQ(report["steps"][1]["rebuilt"]["tunnels"], is_of_tunnels(file) ? 1 : 0) << file;
     EXPECT_EQ(report["cache_damage"].size(), 1U);
     const ProgramResult strict = run({"replay", cache, journal, "-o", (folder_ / "strict").string(), "--strict"});
     EXPECT_EQ(strict.exit_code, 5) << strict.output;

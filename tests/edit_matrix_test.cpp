@@ -8,6 +8,8 @@
 #include "region_checks.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
+#include "tunnel_caches.h"
+#include "run_program.h"
 
 namespace relook {
 namespace {
@@ -285,9 +287,8 @@ TEST(Structures, NoCombinationChangesAFrame) {
     SCOPED_TRACE("groups " + std::to_string(c.regions.groups) + ", tunnels " + std::to_string(c.regions.tunnels) +
                  ", atoms " + std::to_string(c.regions.atoms) + ", shadow bits " + std::to_string(c.shadow_bits));
     const ViewOptions view{1, 5, c.shadow_bits};
-    SceneState state = test_scene(TestScene::study, 40, 30);
-    Image image = preprocessed(state.scene(), view);
-    Replayer replayer(std::move(state), std::move(image), c.regions);
+    const ScratchFolder folder("structures");
+    Replayer replayer = replayer_of_cache(test_scene(TestScene::study, 40, 30), view, c.regions, folder / "c");
     for (const Row& row : structure_rows()) {
       SCOPED_TRACE(row.name);
       replayer.step(edit_of(row.operations), "structures", ".");

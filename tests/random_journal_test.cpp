@@ -13,6 +13,8 @@
 #include "region_checks.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
+#include "tunnel_caches.h"
+#include "run_program.h"
 
 namespace relook {
 namespace {
@@ -46,10 +48,22 @@ RegionOptions random_regions(Dice& dice) {
   regions.groups = dice.one_of(std::vector<std::size_t>{0, 1, 4});
   regions.tunnels = dice.below(3);
   regions.atoms = static_cast<std::uint32_t>(dice.below(3));
+  regions.tunnel_levels = static_cast<std::uint32_t>(dice.below(kTileLevel + 1));
+  if (dice.chance(0.3)) regions.most_tunnels = dice.below(1000);
   regions.color_trees = dice.one_of(std::vector<double>{0, 0.01, 0.1, 1});
   std::cout << "groups " << regions.groups << ", tunnels " << regions.tunnels << ", atoms " << regions.atoms
-            << ", color trees " << regions.color_trees << "\n";
+            << ", color trees " << regions.color_trees << ", tunnel levels " << regions.tunnel_levels << ", most tunnels "
+            << regions.most_tunnels.value_or(~std::uint64_t{0}) << "\n";
   return regions;
+}
+
+/// A replay of a small image of a scene, or of its cache.
+Replayer random_replayer(TestScene scene, const ViewOptions& view, Dice& dice, const ScratchFolder& folder) {
+  const RegionOptions regions = random_regions(dice);
+  if (dice.chance(0.5)) return replayer_of(scene, view, regions);
+  std::cout << "from a cache\n";
+  const SceneState state = view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
+  return replayer_of_cache(state, view, regions, folder / "c");
 }
 
 /// Perhaps only colour trees of a few things are kept.
@@ -121,7 +135,8 @@ TEST_P(RandomJournal, EveryFrameIsAFullRender) {
   set_thread_count(threads);
   Dice dice(seed + 7919 * samples + static_cast<std::uint64_t>(scene));
   const ViewOptions view{samples, 5, shadow_bits};
-  Replayer replayer = replayer_of(scene, view, random_regions(dice));
+  const ScratchFolder folder("random_journal");
+  Replayer replayer = random_replayer(scene, view, dice, folder);
   choose_at_random(replayer, dice);
   std::size_t steps_that_changed = 0;
   for (std::size_t k = 1; k <= kSteps; ++k) {
@@ -165,7 +180,8 @@ TEST_P(RandomJournal, UndoneToTheStartGivesTheFirstFrameBack) {
   std::cout << "RELOOK_SEED=" << seed << "\n";
   set_thread_count(threads);
   Dice dice(seed + 104729 * samples + static_cast<std::uint64_t>(scene));
-  Replayer replayer = replayer_of(scene, {samples, 5, shadow_bits}, random_regions(dice));
+  const ScratchFolder folder("random_journal_undone");
+  Replayer replayer = random_replayer(scene, {samples, 5, shadow_bits}, dice, folder);
   const Json first_look = replayer.state().document().look;
   std::vector<Frame> frames = {replayer.image().frame};
   std::vector<Change> changes;

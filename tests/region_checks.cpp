@@ -81,15 +81,16 @@ class TreeCheck {
   std::span<const TunnelSection> tunnel_;
 };
 
-/// In some tunnel of each region from the leaf up to the tile.
-bool is_enclosed_everywhere(const Scene& scene, const TreeBlock& block, const TileTunnels& tunnels, std::uint32_t leaf,
+/// In some tunnel of each region from the cell up to the tile.
+bool is_enclosed_everywhere(const Scene& scene, const TreeBlock& block, const TileTunnels& tunnels, std::uint32_t cell,
                             std::size_t& segments) {
-  std::vector<bool> holds(kRegions, false);
-  holds[leaf] = true;
-  for (std::uint32_t region = leaf; region < kRegions; ++region) {
-    if (!is_leaf(region))
-      for (std::uint32_t child : children_of(region)) holds[region] = holds[region] || holds[child];
-    if (!holds[region] || (is_leaf(region) && region != leaf)) continue;
+  const TileGrid& grid = tunnels.grid();
+  std::vector<bool> holds(grid.regions(), false);
+  holds[cell] = true;
+  for (std::uint32_t region = cell; region < grid.regions(); ++region) {
+    if (!grid.is_cell(region))
+      for (std::uint32_t child : grid.children_of(region)) holds[region] = holds[region] || holds[child];
+    if (!holds[region] || (grid.is_cell(region) && region != cell)) continue;
     bool enclosed = false;
     for (std::size_t k = 0; k < tunnels.count(region) && !enclosed; ++k)
       enclosed = TreeCheck(scene, block, 0, tunnels.tunnel(region, k).sections).is_enclosed(segments);
@@ -119,9 +120,11 @@ std::size_t stale_tiles(const Replayer& replayer) {
   const ImageRegions fresh = fresh_regions(replayer);
   const ImageRegions& kept = replayer.regions();
   std::size_t stale = kept.has_tunnels() && !(fresh.image_tunnels() == kept.image_tunnels()) ? 1 : 0;
+  stale += fresh.has_groups() && !(fresh.image_groups() == kept.image_groups()) ? 1 : 0;
   for (std::size_t tile = 0; tile < replayer.image().trees.size(); ++tile) {
     const bool same_groups = !fresh.has_groups() || fresh.groups(tile) == kept.groups(tile);
-    const bool same_tunnels = !kept.has_tunnels() || fresh.tunnels(tile) == kept.tunnels(tile);
+    const bool is_here = kept.has_tunnels() && !kept.tunnels(tile).empty();  // or stored, or missing
+    const bool same_tunnels = !is_here || fresh.tunnels(tile) == kept.tunnels(tile);
     stale += same_groups && same_tunnels ? 0 : 1;
   }
   return stale;
@@ -143,8 +146,9 @@ std::size_t segments_outside(const Replayer& replayer, const ImageRegions& regio
       const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), layout_of(replayer)),
                               trees.hits_of(sample)};
       expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
-      const std::uint32_t leaf = leaf_of(sample / image.view.samples, rect.x1 - rect.x0);
-      if (!is_enclosed_everywhere(scene, block, regions.tunnels(tile), leaf, segments)) ++outside;
+      const TileTunnels& tunnels = regions.tunnels(tile);
+      const std::uint32_t cell = tunnels.grid().cell_of(sample / image.view.samples, rect.x1 - rect.x0);
+      if (!is_enclosed_everywhere(scene, block, tunnels, cell, segments)) ++outside;
     }
   }
   return outside;

@@ -12,7 +12,7 @@ namespace relook {
 /// Groups and tunnels built afresh from the replayer's trees.
 [[nodiscard]] ImageRegions fresh_regions(const Replayer& replayer);
 
-/// The number of tiles whose groups or tunnels (if the replayer has any) are not those built afresh; one more if
+/// The number of tiles whose groups or tunnels (if they are in memory) are not those built afresh; one more if
 /// the image's are not.
 [[nodiscard]] std::size_t stale_tiles(const Replayer& replayer);
 

@@ -96,6 +96,49 @@ TEST_F(Residence, a_piece_on_disk_is_read_once_for_all_who_ask_at_the_same_time)
   EXPECT_EQ(reads, 1);
 }
 
+TEST_F(Residence, what_is_stored_is_fetched_when_used_and_leaves_without_a_copy) {
+  Residency& residency = start(3 * kPieceBytes, true);
+  int packed = 0;
+  PieceHandler handler;
+  handler.pack = [&](std::size_t tile) {
+    ++packed;
+    return pieces_[tile];
+  };
+  handler.unpack = [this](std::size_t tile, BytesView bytes) { pieces_[tile].assign(bytes.begin(), bytes.end()); };
+  handler.drop = [this](std::size_t tile) { pieces_[tile] = {}; };
+  handler.fetch = [this](std::size_t tile) -> std::optional<std::uint64_t> {
+    if (tile == 7) return std::nullopt;  // damaged
+    pieces_[tile].assign(kPieceBytes, std::byte{42});
+    return kPieceBytes;
+  };
+  handler.may_be_missing = true;
+  residency.add_kind(PieceKind::tunnels, kTiles, std::move(handler));
+  const auto use_tunnels = [&](std::size_t tile) { const auto lease = residency.use(PieceKind::tunnels, tile); };
+  for (std::size_t tile = 0; tile < kTiles; ++tile) residency.set_stored(PieceKind::tunnels, tile, kPieceBytes, 1, 1);
+  EXPECT_TRUE(residents().empty()) << "nothing is fetched before it is used";
+  for (int round = 0; round < 2; ++round)
+    for (std::size_t tile = 0; tile < 6; ++tile) {
+      use_tunnels(tile);
+      EXPECT_EQ(pieces_[tile], Bytes(kPieceBytes, std::byte{42}));
+      EXPECT_LE(residents().size(), 3U);
+    }
+  EXPECT_EQ(packed, 0);
+  PieceCounts counts = residency.take_counts();
+  EXPECT_EQ(counts.fetched[2], 6U) << "each once";
+  EXPECT_EQ(counts.reloaded[2], 6U) << "each comes back once";
+  EXPECT_EQ(counts.evicted[2], 9U);
+  use_tunnels(7);
+  EXPECT_FALSE(is_resident(7));
+  EXPECT_EQ(residency.take_counts().fetched[2], 0U);
+  pieces_[0].assign(kPieceBytes, std::byte{1});  // changed: the store has the old one
+  residency.set(PieceKind::tunnels, 0, kPieceBytes, std::nullopt);
+  for (const std::size_t tile : {1U, 2U, 3U, 4U}) use_tunnels(tile);
+  EXPECT_FALSE(is_resident(0));
+  EXPECT_EQ(packed, 1);
+  use_tunnels(0);
+  EXPECT_EQ(pieces_[0], Bytes(kPieceBytes, std::byte{1}));
+}
+
 TEST_F(Residence, a_piece_that_could_not_be_unpacked_is_on_disk_as_before) {
   Residency& residency = start(3 * kPieceBytes, true);
   bool is_short = true;

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
+#include <vector>
 
 namespace relook {
 namespace {
@@ -168,6 +171,62 @@ TEST(Shaft, APyramidNarrowsTowardsItsApex) {
   EXPECT_FALSE(touches(pyramid, Box(Point(0.6F, -0.1F, -5), Point(0.8F, 0.1F, -5))));
   EXPECT_TRUE(is_rejected_by_planes(pyramid, Box(Point(0.6F, -0.1F, -5), Point(0.8F, 0.1F, -5))));
   EXPECT_FALSE(touches(pyramid, Box(Point(-1, -1, 1), Point(1, 1, 2))));
+}
+
+/// By Cauchy: the mean area of its shadows, times four. A shadow is the hull of those of both boxes.
+double area_of_shadow(const Shaft& shaft, const Imath::V3d& direction) {
+  const Imath::V3d some = std::abs(direction.x) < 0.5 ? Imath::V3d(1, 0, 0) : Imath::V3d(0, 1, 0);
+  const Imath::V3d u = direction.cross(some).normalized(), v = direction.cross(u);
+  std::vector<Imath::V2d> points;
+  for (const Box* box : {&shaft.from, &shaft.to})
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const Imath::V3d at((corner & 1U) != 0 ? box->max.x : box->min.x, (corner & 2U) != 0 ? box->max.y : box->min.y,
+                          (corner & 4U) != 0 ? box->max.z : box->min.z);
+      points.emplace_back(at.dot(u), at.dot(v));
+    }
+  std::ranges::sort(points, [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::vector<Imath::V2d> hull;
+  for (int half = 0; half < 2; ++half) {
+    const std::size_t first = hull.size();
+    for (const Imath::V2d& p : points) {
+      while (hull.size() >= first + 2) {
+        const Imath::V2d a = hull[hull.size() - 2], b = hull.back();
+        if ((b - a).cross(p - a) > 0) break;
+        hull.pop_back();
+      }
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::ranges::reverse(points);
+  }
+  double twice = 0;
+  for (std::size_t i = 0; i < hull.size(); ++i) twice += hull[i].cross(hull[(i + 1) % hull.size()]);
+  return twice / 2;
+}
+
+TEST(Shaft, ItsSurfaceIsFourTimesItsMeanShadow) {
+  Random random(7);
+  for (int trial = 0; trial < 60; ++trial) {
+    const Shaft shaft = random.shaft();
+    double sum = 0;
+    constexpr int kDirections = 4000;  // evenly over the sphere
+    for (int i = 0; i < kDirections; ++i) {
+      const double z = 1 - (2 * i + 1.0) / kDirections, turn = i * 2.399963229728653, r = std::sqrt(1 - z * z);
+      sum += area_of_shadow(shaft, {r * std::cos(turn), r * std::sin(turn), z});
+    }
+    const double expected = 4 * sum / kDirections;
+    EXPECT_NEAR(surface_area(shaft), expected, 2e-3 * expected + 1e-9);
+  }
+}
+
+TEST(Shaft, TheSurfaceOfSimpleShapes) {
+  const Box unit(Point(0, 0, 0), Point(1, 1, 1));
+  EXPECT_DOUBLE_EQ(surface_area({unit, unit}), 6);
+  EXPECT_DOUBLE_EQ(surface_area({unit, Box(Point(4, 0, 0), Point(5, 1, 1))}), 2 + 4 * 5) << "a beam";
+  EXPECT_DOUBLE_EQ(surface_area({Box(Point(0, 0, 0)), Box(Point(0, 3, 4))}), 0) << "a line";
+  const double slope = std::hypot(1, 10);
+  EXPECT_NEAR(surface_area({Box(Point(0, 0, 0)), Box(Point(-1, -1, -10), Point(1, 1, -10))}), 4 + 4 * slope, 1e-9)
+      << "a pyramid";
 }
 
 }  // namespace

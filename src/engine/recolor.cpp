@@ -128,9 +128,22 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   const Image& image = stored_.image();
   const GrowScene grow{rays_, nullptr, image.view.max_depth, image.view.shadow_bits, &objects_};
   const std::vector<bool> near_tiles;
-  const UpdatePass pass{
-      image,   stored_.lights(), grow,         change,    found.tasks,        stored_.classes(), stored_.regions(),
-      nullptr, near_tiles,       known_leaves, programs_, stored_.residency()};
+  std::vector<bool> grouped_tiles;
+  if (!found.works.empty() && known_leaves == nullptr)
+    grouped_tiles = tiles_with_tasks(stored_.regions(), found.tasks, result.counters.by_groups);
+  const UpdatePass pass{image,
+                        stored_.lights(),
+                        grow,
+                        change,
+                        found.tasks,
+                        stored_.classes(),
+                        stored_.regions(),
+                        nullptr,
+                        near_tiles,
+                        grouped_tiles,
+                        known_leaves,
+                        programs_,
+                        stored_.residency()};
   parallel_for(found.works.size(), [&](std::size_t tile) {
     if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);
   });

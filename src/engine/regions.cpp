@@ -1,5 +1,6 @@
 #include "engine/regions.h"
 
+#include <atomic>
 #include <chrono>
 
 #include "base/memory.h"
@@ -76,6 +77,7 @@ void ImageRegions::build_groups(const Image& image, const ClassOf& class_of) {
   if (options_.groups == 0) return;
   groups_.resize(image.trees.size());
   parallel_for(groups_.size(), [&](std::size_t tile) { groups_[tile] = groups_of(image, tile, class_of); });
+  image_groups_ = GroupPyramid(groups_, (image.frame.width + kTileSize - 1) / kTileSize, options_.groups);
 }
 
 void ImageRegions::offer(std::shared_ptr<StoredTunnels> stored, std::size_t tiles) {
@@ -92,17 +94,19 @@ bool ImageRegions::may_have_tunnels(const Image& image) const {
   return !relook::cell_levels(options_.shape(), image.frame.width, image.frame.height).empty();
 }
 
-void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
+std::size_t ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
   cell_levels_ = cell_levels(options_.shape(), image.frame.width, image.frame.height);
-  if (cell_levels_.empty()) return;
+  if (cell_levels_.empty()) return 0;
   if (has_tunnels()) offer(nullptr, 0);  // these have been used up
   add_pieces(image.trees.size());
   lights_ = light_ends(grow.scene.scene());
   mean_area_ = 0;
-  const auto take_or_build = [&](std::size_t tile) {
-    if (!take_stored(tile)) build(image, grow, tile, class_of);
-  };
-  parallel_for(tunnels_.size(), take_or_build);
+  std::atomic<std::size_t> lost = 0;
+  parallel_for(tunnels_.size(), [&](std::size_t tile) {
+    if (take_stored(tile)) return;
+    lost += stored_ && !stale_[tile].all() ? 1 : 0;
+    build(image, grow, tile, class_of);
+  });
   measure_areas();
   parallel_for(stale_.size(), [&](std::size_t tile) {
     if (stale_[tile].any()) static_cast<void>(update(image, grow, tile, stale_[tile], class_of));
@@ -111,6 +115,7 @@ void ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, cons
   const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
   image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
                                  [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
+  return lost;
 }
 
 bool ImageRegions::take_stored(std::size_t tile) {
@@ -177,13 +182,17 @@ double ImageRegions::relative_area(std::size_t tile) const {
 void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const { enclose(tunnel, around_[tile]); }
 
 void ImageRegions::update_image(const std::vector<std::size_t>& tiles) {
+  if (has_groups()) image_groups_.update(groups_, tiles);
   if (!has_tunnels()) return;
   image_tunnels_.update(tiles, [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
 }
 
 bool ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
                           const ClassOf& class_of) {
-  if (has_groups()) groups_[tile] = groups_of(image, tile, class_of);
+  if (has_groups()) {
+    const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
+    groups_[tile].update(image.trees[tile], rect.x1 - rect.x0, image.view.samples, changed, class_of);
+  }
   if (!has_tunnels()) {
     if (stored_) stale_[tile] |= changed;
     return false;
@@ -204,7 +213,7 @@ bool ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t
 }
 
 std::size_t ImageRegions::group_bytes() const {
-  std::size_t sum = 0;
+  std::size_t sum = image_groups_.bytes();
   for (const PathGroups& groups : groups_) sum += groups.bytes();
   return sum;
 }

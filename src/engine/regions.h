@@ -43,8 +43,8 @@ class ImageRegions {
   /// Groups of all tiles, afresh. `class_of`: see PathGroups.
   void build_groups(const Image& image, const ClassOf& class_of);
   /// Tunnels of all tiles: those that are stored and still hold are there when they are first used, the others are built
-  /// afresh. `grow`: the scene in which the image's trees hold.
-  void build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
+  /// afresh. `grow`: the scene in which the image's trees hold. Returns how many tiles' were stored and cannot be read.
+  std::size_t build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
   /// Tunnels of the image as it is now, in a cache. Comes before build_tunnels().
   void offer(std::shared_ptr<StoredTunnels> stored, std::size_t tiles);
   /// The stored ones do not hold any more: paths have other ids, or lights have changed.
@@ -61,6 +61,12 @@ class ImageRegions {
               const ClassOf& class_of);
 
   void update_image(const std::vector<std::size_t>& tiles);
+
+  /// By tile: may it have a path class that is flagged? Requires has_groups().
+  [[nodiscard]] std::vector<bool> find_tiles(std::span<const std::uint8_t> flagged, RegionCounters& counters) const {
+    return image_groups_.find(flagged, counters);
+  }
+  [[nodiscard]] const GroupPyramid& image_groups() const { return image_groups_; }
 
   /// By tile: may the change touch its tunnels? Requires has_tunnels().
   [[nodiscard]] std::vector<bool> find_tiles(const TunnelTest& test, RegionCounters& counters) const {
@@ -92,6 +98,7 @@ class ImageRegions {
   RegionOptions options_;
   Residency* residency_;
   std::vector<PathGroups> groups_;
+  GroupPyramid image_groups_;
   std::vector<std::uint8_t> cell_levels_;  // by tile
   std::vector<TileTunnels> tunnels_;
   std::vector<Sections> around_;  // by tile: around all of its trees, always resident

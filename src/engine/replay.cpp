@@ -111,6 +111,9 @@ struct Replayer::Impl {
     const TunnelTest tunnel_test{boxes, ends};
     std::vector<bool> near_tiles;
     if (uses_tunnels) near_tiles = stored.regions().find_tiles(tunnel_test, result.counters.by_tunnels);
+    std::vector<bool> grouped_tiles;
+    if (known_leaves == nullptr && !change.rays.lights_changed)
+      grouped_tiles = tiles_with_tasks(stored.regions(), tasks, result.counters.by_groups);
     const UpdatePass pass{image(),
                           stored.lights(),
                           scene,
@@ -120,6 +123,7 @@ struct Replayer::Impl {
                           stored.regions(),
                           uses_tunnels ? &tunnel_test : nullptr,
                           near_tiles,
+                          grouped_tiles,
                           known_leaves,
                           programs,
                           residency,

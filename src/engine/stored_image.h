@@ -54,7 +54,9 @@ class StoredImage {
   /// Tunnels of the image as it is now. Requires: the residency is watched.
   void offer_tunnels(std::shared_ptr<StoredTunnels> stored) { regions_.offer(std::move(stored), image_.trees.size()); }
   /// Requires: the trees hold in `scene`.
-  void build_tunnels(const GrowScene& scene) { regions_.build_tunnels(image_, scene, class_of()); }
+  void build_tunnels(const GrowScene& scene) {
+    rebuilt_tunnels_ += regions_.build_tunnels(image_, scene, class_of());
+  }
 
   /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees. The others
   /// stay without.

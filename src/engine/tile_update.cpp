@@ -133,6 +133,11 @@ class TileUpdater {
 
 }  // namespace
 
+std::vector<bool> tiles_with_tasks(const ImageRegions& regions, const PathTasks& tasks, RegionCounters& counters) {
+  if (!tasks.any || !regions.has_groups()) return {};
+  return regions.find_tiles(tasks.of_class, counters);
+}
+
 TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
   TileWork work;
   if (pass.change.rays.lights_changed || (pass.change.touches_segments() && pass.tunnel_test == nullptr)) {
@@ -143,10 +148,12 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
   if (pass.known_leaves != nullptr) {
     work.by_path = (*pass.known_leaves)[tile];
   } else if (pass.tasks.any) {
-    if (pass.regions.has_groups())
-      select_leaves(pass.regions.groups(tile), pass.tasks.of_class, work.by_path, work.by_groups);
-    else
+    if (pass.regions.has_groups()) {
+      if (pass.grouped_tiles[tile])
+        select_leaves(pass.regions.groups(tile), pass.tasks.of_class, work.by_path, work.by_groups);
+    } else {
       work.by_path.set();
+    }
   }
   work.leaves = work.by_path;
   if (pass.change.touches_segments() && pass.near_tiles[tile]) {

@@ -49,6 +49,7 @@ struct UpdatePass {
   const ImageRegions& regions;
   const TunnelTest* tunnel_test = nullptr;            // null: without tunnels, every segment is tested
   const std::vector<bool>& near_tiles;                // with tunnels: those that the change may touch
+  const std::vector<bool>& grouped_tiles;             // see tiles_with_tasks(); not read if `known_leaves` is there
   const std::vector<Leaves>* known_leaves = nullptr;  // by tile, those that paths tell; null: to be found
   ProgramTable& programs;
   Residency& residency;
@@ -63,6 +64,9 @@ struct TileTools {
   TreeBlock block;  // empty between tiles; keeps its memory
 };
 
+/// By tile: may it have a path with a task, as far as groups above the tiles tell? Empty if there is no task.
+[[nodiscard]] std::vector<bool> tiles_with_tasks(const ImageRegions& regions, const PathTasks& tasks,
+                                                 RegionCounters& counters);
 [[nodiscard]] TileWork find_tile_work(const UpdatePass& pass, std::size_t tile);
 /// Requires: the tile's ray trees are leased.
 [[nodiscard]] TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,

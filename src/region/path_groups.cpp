@@ -107,13 +107,39 @@ PathGroups::PathGroups(const TileTrees& trees, std::uint32_t width, std::uint32_
   for (std::uint32_t region = kLeaves; region < kRegions; ++region) unite(region);
 }
 
+void PathGroups::update(const TileTrees& trees, std::uint32_t width, std::uint32_t samples, const Leaves& changed,
+                        const ClassOf& class_of) {
+  std::vector<bool> is_changed(kRegions);
+  const auto height = static_cast<std::uint32_t>(trees.paths.size() / samples / width);
+  for (std::uint32_t leaf = 0; leaf < kLeaves; ++leaf) {
+    if (!changed.test(leaf)) continue;
+    is_changed[leaf] = true;
+    clear(leaf);
+    const RegionSquare square = square_of(leaf);
+    for (std::uint32_t y = square.y; y < std::min(square.y + square.size, height); ++y)
+      for (std::uint32_t x = square.x; x < std::min(square.x + square.size, width); ++x)
+        for (std::uint32_t k = 0; k < samples; ++k) add(leaf, class_of(trees.paths[(y * width + x) * samples + k]));
+  }
+  for (std::uint32_t region = kLeaves; region < kRegions; ++region) {
+    for (const std::uint32_t child : children_of(region)) is_changed[region] = is_changed[region] || is_changed[child];
+    if (!is_changed[region]) continue;
+    clear(region);
+    unite(region);
+  }
+}
+
+void PathGroups::clear(std::uint32_t region) {
+  counts_[region] = 0;
+  std::fill_n(classes_.begin() + static_cast<std::ptrdiff_t>(most_ * region), most_, PathId());
+}
+
 void PathGroups::add(std::uint32_t region, PathId path_class) {
   if (counts_[region] == kMany) return;
   const auto known = classes(region);
   if (std::ranges::find(known, path_class) != known.end()) return;
   if (known.size() == most_) {
+    clear(region);
     counts_[region] = kMany;
-    std::fill_n(classes_.begin() + static_cast<std::ptrdiff_t>(most_ * region), most_, PathId());
     return;
   }
   classes_[most_ * region + counts_[region]++] = path_class;
@@ -122,12 +148,96 @@ void PathGroups::add(std::uint32_t region, PathId path_class) {
 void PathGroups::unite(std::uint32_t region) {
   for (std::uint32_t child : children_of(region)) {
     if (counts_[child] == kMany) {
+      clear(region);
       counts_[region] = kMany;
-      std::fill_n(classes_.begin() + static_cast<std::ptrdiff_t>(most_ * region), most_, PathId());
       return;
     }
     for (PathId path_class : classes(child)) add(region, path_class);
   }
+}
+
+GroupPyramid::GroupPyramid(std::span<const PathGroups> tiles, std::size_t columns, std::size_t most)
+    : columns_(columns), rows_(tiles.size() / columns), most_(most) {
+  std::size_t rows = rows_;
+  while (columns > 1 || rows > 1 || levels_.empty()) {
+    columns = (columns + 1) / 2;
+    rows = (rows + 1) / 2;
+    levels_.push_back({columns, rows, std::vector<Classes>(columns * rows)});
+    for (std::size_t y = 0; y < rows; ++y)
+      for (std::size_t x = 0; x < columns; ++x) unite(tiles, levels_.size() - 1, x, y);
+  }
+}
+
+void GroupPyramid::unite(std::span<const PathGroups> tiles, std::size_t level, std::size_t x, std::size_t y) {
+  const std::size_t columns = level == 0 ? columns_ : levels_[level - 1].columns;
+  const std::size_t rows = level == 0 ? rows_ : levels_[level - 1].rows;
+  Classes& united = levels_[level].regions[y * levels_[level].columns + x];
+  united.emplace();
+  for (std::size_t part = 0; part < 4 && united; ++part) {
+    const std::size_t px = 2 * x + part % 2, py = 2 * y + part / 2;
+    if (px >= columns || py >= rows) continue;
+    const std::size_t place = py * columns + px;
+    const Classes* const below = level == 0 ? nullptr : &levels_[level - 1].regions[place];
+    if (below != nullptr ? !*below : !tiles[place].is_group(kRoot)) {
+      united.reset();
+      break;
+    }
+    for (const PathId path_class : below != nullptr ? std::span<const PathId>(**below) : tiles[place].classes(kRoot)) {
+      if (std::ranges::find(*united, path_class) != united->end()) continue;
+      if (united->size() == most_) {
+        united.reset();
+        break;
+      }
+      united->push_back(path_class);
+    }
+  }
+}
+
+void GroupPyramid::update(std::span<const PathGroups> tiles, std::vector<std::size_t> changed) {
+  std::size_t columns = columns_;
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const std::size_t wide = levels_[level].columns;
+    for (std::size_t& place : changed) place = place / columns / 2 * wide + place % columns / 2;
+    std::ranges::sort(changed);
+    const auto repeated = std::ranges::unique(changed);
+    changed.erase(repeated.begin(), repeated.end());
+    for (const std::size_t place : changed) unite(tiles, level, place % wide, place / wide);
+    columns = wide;
+  }
+}
+
+void GroupPyramid::descend(std::size_t level, std::size_t x, std::size_t y, std::span<const std::uint8_t> flagged,
+                           std::vector<bool>& found, RegionCounters& counters) const {
+  ++counters.visited;
+  const Classes& classes = levels_[level].regions[y * levels_[level].columns + x];
+  if (classes && std::ranges::none_of(*classes, [&](PathId id) { return flagged[id.index()] != 0; })) {
+    ++counters.culled;
+    return;
+  }
+  const std::size_t columns = level == 0 ? columns_ : levels_[level - 1].columns;
+  const std::size_t rows = level == 0 ? rows_ : levels_[level - 1].rows;
+  for (std::size_t part = 0; part < 4; ++part) {
+    const std::size_t px = 2 * x + part % 2, py = 2 * y + part / 2;
+    if (px >= columns || py >= rows) continue;
+    if (level == 0)
+      found[py * columns + px] = true;
+    else
+      descend(level - 1, px, py, flagged, found, counters);
+  }
+}
+
+std::vector<bool> GroupPyramid::find(std::span<const std::uint8_t> flagged, RegionCounters& counters) const {
+  std::vector<bool> found(columns_ * rows_, false);
+  if (!found.empty()) descend(levels_.size() - 1, 0, 0, flagged, found, counters);
+  return found;
+}
+
+std::size_t GroupPyramid::bytes() const {
+  std::size_t sum = 0;
+  for (const Level& level : levels_)
+    for (const Classes& classes : level.regions)
+      sum += sizeof classes + (classes ? classes->capacity() * sizeof(PathId) : 0);
+  return sum;
 }
 
 void select_leaves(const PathGroups& groups, std::span<const std::uint8_t> flagged, Leaves& leaves,
