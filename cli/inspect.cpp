@@ -80,6 +80,16 @@ void inspect_cache(const Arguments& arguments, Console& console) {
                content["max_depth"].dump() + ", " + content["objects"].dump() + " objects, " +
                content["lights"].dump() + " lights, " + std::to_string(content["files"].size()) + " files, " +
                std::to_string(sizes.total_bytes) + " bytes");
+  // The rows of the paper's Table 2 that are kept on disk; groups follow from the paths of the samples.
+  const Json& pieces = content["pieces"];
+  const auto count = [&](const char* kind) { return std::to_string(pieces[kind].get<std::uint64_t>()); };
+  const auto bytes_of = [&](const char* part) {
+    const auto found = sizes.bytes_by_part.find(part);
+    return std::to_string(found == sizes.bytes_by_part.end() ? 0 : found->second) + " bytes";
+  };
+  console.line("pieces: " + count("ray_paths") + " ray paths in " + bytes_of("paths") + ", " + count("groups") +
+               " groups of one path, " + count("ray_trees") + " ray trees in " + bytes_of("trees") + ", " +
+               count("tunnels") + " tunnels in " + bytes_of("tunnels"));
   for (const auto& [part, share] : sizes.per_sample()) {
     const auto bytes = part == "total" ? sizes.total_bytes : sizes.bytes_by_part.at(part);
     console.line(part + ": " + std::to_string(bytes) + " bytes, " + std::to_string(share) + " a sample");
