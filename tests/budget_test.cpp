@@ -9,7 +9,9 @@
 #include "engine/sampling.h"
 #include "random_changes.h"
 #include "region_checks.h"
+#include "run_program.h"
 #include "tree_reader.h"
+#include "tunnel_caches.h"
 
 namespace relook {
 namespace {
@@ -66,7 +68,12 @@ TEST_P(Budget, FramesAreFullRenders) {
   const auto policy =
       dice.one_of(std::vector<EvictionPolicy>(std::begin(kEvictionPolicies), std::end(kEvictionPolicies)));
   std::cout << "tunnels " << regions.tunnels << ", policy " << policy_name(policy) << "\n";
-  Replayer replayer = replayer_of(c.scene, view, regions, limited(c, policy, piece_bytes(c, view)));
+  const ResidencyOptions limit = limited(c, policy, piece_bytes(c, view));
+  const ScratchFolder folder("budget");
+  const bool has_cache = dice.chance(0.5);
+  std::cout << (has_cache ? "from a cache\n" : "");
+  Replayer replayer = has_cache ? replayer_of_cache(small_scene(c.scene, view), view, regions, folder / "c", limit)
+                                : replayer_of(c.scene, view, regions, limit);
   Counters total;
   for (std::size_t k = 1; k <= kSteps; ++k) {
     const bool is_drag = dice.chance(0.2);

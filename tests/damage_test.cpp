@@ -210,7 +210,7 @@ TEST_F(Damage, a_replay_says_what_it_traced_again_and_strict_refuses) {
   for (const std::filesystem::path& file : files()) {
     if (!is_mendable(file)) continue;
     std::filesystem::rename(file, folder_ / "aside");
-    const Json report = replayed("run");
+    const Json report = replayed("run_" + file.stem().string());
     EXPECT_EQ(report["frames"], sound["frames"]) << file;
     EXPECT_EQ(report["steps"][0]["rebuilt"]["ray_trees"], is_of_tunnels(file) ? 0 : 64 * 36) << file;
     EXPECT_EQ(report["steps"][1]["rebuilt"]["tunnels"], is_of_tunnels(file) ? 1 : 0) << file;

@@ -163,9 +163,13 @@ Change random_movement(const Json& look, const std::string& node, Dice& dice) {
   return change;
 }
 
+SceneState small_scene(TestScene scene, const ViewOptions& view) {
+  return view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
+}
+
 Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions,
                      const ResidencyOptions& residency) {
-  SceneState state = view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
+  SceneState state = small_scene(scene, view);
   Image image = preprocessed(state.scene(), view);
   return Replayer(std::move(state), std::move(image), regions, std::make_unique<Residency>(residency));
 }

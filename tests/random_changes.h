@@ -62,7 +62,9 @@ struct Change {
 [[nodiscard]] Edit edit_of_list(const std::vector<Json>& operations);
 /// One frame of a drag: something that a node's selection can do.
 [[nodiscard]] Change random_movement(const Json& look, const std::string& node, Dice& dice);
-/// A replay of a small image of a scene.
+/// A scene whose image is small.
+[[nodiscard]] SceneState small_scene(TestScene scene, const ViewOptions& view);
+/// A replay of it.
 [[nodiscard]] Replayer replayer_of(TestScene scene, ViewOptions view, const RegionOptions& regions,
                                    const ResidencyOptions& residency = {});
 

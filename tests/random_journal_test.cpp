@@ -62,8 +62,7 @@ Replayer random_replayer(TestScene scene, const ViewOptions& view, Dice& dice, c
   const RegionOptions regions = random_regions(dice);
   if (dice.chance(0.5)) return replayer_of(scene, view, regions);
   std::cout << "from a cache\n";
-  const SceneState state = view.samples == 1 ? test_scene(scene, 80, 60) : test_scene(scene, 36, 27);
-  return replayer_of_cache(state, view, regions, folder / "c");
+  return replayer_of_cache(small_scene(scene, view), view, regions, folder / "c");
 }
 
 /// Perhaps only colour trees of a few things are kept.

@@ -97,7 +97,7 @@ TEST_F(Residence, a_piece_on_disk_is_read_once_for_all_who_ask_at_the_same_time)
 }
 
 TEST_F(Residence, what_is_stored_is_fetched_when_used_and_leaves_without_a_copy) {
-  Residency& residency = start(3 * kPieceBytes, true);
+  Residency& residency = start(3 * kPieceBytes, true, true, EvictionPolicy::lru);
   int packed = 0;
   PieceHandler handler;
   handler.pack = [&](std::size_t tile) {
@@ -132,6 +132,7 @@ TEST_F(Residence, what_is_stored_is_fetched_when_used_and_leaves_without_a_copy)
   EXPECT_EQ(residency.take_counts().fetched[2], 0U);
   pieces_[0].assign(kPieceBytes, std::byte{1});  // changed: the store has the old one
   residency.set(PieceKind::tunnels, 0, kPieceBytes, std::nullopt);
+  residency.begin_change();
   for (const std::size_t tile : {1U, 2U, 3U, 4U}) use_tunnels(tile);
   EXPECT_FALSE(is_resident(0));
   EXPECT_EQ(packed, 1);

