@@ -45,6 +45,7 @@ struct PieceHandler {
 struct PieceCounts {
   std::array<std::uint64_t, kPieceKinds> evicted{}, reloaded{};
   std::uint64_t others_evicted = 0;
+  std::uint64_t evicted_bytes = 0, reloaded_bytes = 0;  // others included
 };
 
 /// Something outside of Residency that could leave memory, too.
@@ -162,6 +163,7 @@ class Residency {
   void require_floor_locked() const;
   void list_candidates();
   bool evict(PieceKind kind, std::size_t tile);
+  void evict_other(const Victim& victim);
   [[nodiscard]] double return_seconds(const Piece& piece) const;
   void free_copy(Piece& piece);
 

@@ -5,6 +5,7 @@
 
 #include "cache/cache.h"
 #include "cache/residency.h"
+#include "engine/counters.h"
 #include "engine/image.h"
 #include "scene/state.h"
 
@@ -33,6 +34,7 @@ struct OpenedCache {
   Image image;
   std::string scene_hash;
   CacheLosses losses;  // made good
+  Moves rebuilt;       // for that
 };
 /// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults. On a fault
 /// `opened` is untouched. `residency`: tiles leave memory for it as they are read; null: all are kept.

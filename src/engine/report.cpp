@@ -34,7 +34,9 @@ Json seconds_json(const Seconds& seconds) {
 Json resident_json(const Resident& resident) {
   return {{"ray_paths", resident.ray_paths},
           {"ray_trees", resident.ray_trees},
+          {"sample_colors", resident.sample_colors},
           {"color_trees", resident.color_trees},
+          {"groups", resident.groups},
           {"tunnels", resident.tunnels},
           {"total", resident.total}};
 }
@@ -44,7 +46,7 @@ Json moves_json(const Moves& moves) {
           {"sample_colors", moves.sample_colors},
           {"color_trees", moves.color_trees},
           {"tunnels", moves.tunnels},
-          {"total", moves.ray_trees + moves.sample_colors + moves.color_trees + moves.tunnels}};
+          {"total", moves.bytes}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
@@ -99,7 +101,10 @@ Json step_json(const StepReport& step) {
       {"ray_tests", counters.ray_tests},
       {"ray_tests_culled", counters.ray_tests_culled},
       {"ray_tests_culled_by",
-       {{"tunnels", counters.culled_by_tunnels}, {"class", counters.ray_tests_culled - counters.culled_by_tunnels}}},
+       {{"tunnels", counters.culled.tunnels},
+        {"boxes", counters.culled.boxes},
+        {"dropped", counters.culled.dropped},
+        {"class", counters.culled.by_class}}},
       {"ray_updates", counters.ray_updates},
       {"shadow_updates", counters.shadow_updates},
       {"object_rays", counters.object_rays},

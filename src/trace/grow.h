@@ -8,6 +8,7 @@
 
 #include "trace/object_levels.h"
 #include "trace/path_cursor.h"
+#include "trace/segment_counts.h"
 #include "trace/touch.h"
 #include "trace/tracer.h"
 #include "trace/tree_block.h"
@@ -18,15 +19,19 @@ struct GrowCounters {
   std::uint64_t ray_updates = 0;     // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;  // shadow segments traced against the whole scene
   std::uint64_t ray_tests = 0;       // stored segments tested against the selection
+  CulledSegments culled;             // stored segments looked at, or dropped, that were not
   std::uint64_t object_rays = 0;     // rays and shadow segments against one known object
   std::uint64_t trees_rebuilt = 0;   // whose hits these rays have found again
+  std::uint64_t hits_rebuilt = 0;    // of these trees
 
   GrowCounters& operator+=(const GrowCounters& other) {
     ray_updates += other.ray_updates;
     shadow_updates += other.shadow_updates;
     ray_tests += other.ray_tests;
+    culled += other.culled;
     object_rays += other.object_rays;
     trees_rebuilt += other.trees_rebuilt;
+    hits_rebuilt += other.hits_rebuilt;
     return *this;
   }
 };
@@ -69,7 +74,7 @@ struct RayChange {
   std::vector<std::uint32_t> before_index;         // by ObjectId, into `before`
   Tracer::TopLevel moved_after;                    // moved objects where they are now
   Tracer::TopLevel shadows_before, shadows_after;  // objects with flag `shadows`
-  SelectionBounds bounds;                          // of these three
+  SelectionBounds bounds;                          // of these three, where they are not empty
   std::vector<LightId> old_lights;                 // light order of the stored trees
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
   bool lights_changed = false;                     // any light added, deleted, moved or reordered

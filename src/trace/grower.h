@@ -208,17 +208,22 @@ class FilterReader {
   return node;
 }
 
-inline void skip_children(StoredTree& stored, const PathNode& node) {
+/// Leaves out what is below a node: the number of its segments.
+inline std::uint64_t skip_children(StoredTree& stored, const PathNode& node) {
+  std::uint64_t segments = 0;
   for (unsigned owed = node.children(); owed > 0; --owed) {
     std::span<const Hit> hits;
-    owed += take(stored, hits).children();
+    const PathNode below = take(stored, hits);
+    segments += below.segments();
+    owed += below.children();
   }
+  return segments;
 }
 
-inline void skip_tree(StoredTree& stored) {
+inline std::uint64_t skip_tree(StoredTree& stored) {
   std::span<const Hit> hits;
   const PathNode node = take(stored, hits);
-  skip_children(stored, node);
+  return node.segments() + skip_children(stored, node);
 }
 
 }  // namespace relook

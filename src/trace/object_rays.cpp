@@ -15,6 +15,7 @@ Hit ObjectRays::hit(ObjectId object, const SpawnedRay& ray) {
   ++counters_.object_rays;
   const Meeting meeting = Tracer::intersect(objects_->of(object), {ray.origin, ray.direction});
   if (meeting.object.is_none()) refuse_trees();
+  ++found_;
   return meeting.hit;
 }
 
@@ -29,6 +30,7 @@ const std::vector<Crossing>& ObjectRays::filters(std::span<const std::uint32_t> 
   }
   std::ranges::sort(crossings_, {}, [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); });
   if (!std::ranges::equal(crossings_, objects, {}, [](const Crossing& c) { return c.object.index(); })) refuse_trees();
+  found_ += crossings_.size();
   return crossings_;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "trace/grower.h"
+#include "trace/segment_tests.h"
 
 namespace relook {
 namespace {
@@ -12,21 +13,26 @@ class Updater {
  public:
   Updater(const GrowScene& grow, const RayChange& change, const Touches* touches, std::uint32_t sample,
           StoredTree stored, TreeBlock& block, GrowCounters& counters)
-      : grower_(grow, sample, block), change_(change), touches_(touches), stored_(stored), counters_(counters) {}
+      : grower_(grow, sample, block),
+        change_(change),
+        touches_(touches),
+        stored_(stored),
+        counters_(counters),
+        tests_(change, grow.shadow_bits, counters) {}
 
   std::uint32_t update(const SpawnedRay& ray, std::uint32_t parent, History history) {
     std::span<const Hit> hits;
     const PathNode node = take(stored_, hits);
     if (!node.is_miss() && (change_.flags(node.object()) & RayChange::moved) != 0) {
       // The selection is removed: what lies behind it shows (paper 2.2).
-      skip_children(stored_, node);
+      counters_.culled.dropped += node.segments() + skip_children(stored_, node);
       changed_ = true;
       return trace(ray, parent);
     }
     const std::uint32_t index = grower_.append(ray, parent);
     if (!node.is_miss()) grower_.set_hit(index, node.object(), hits.front());
     const Touch touch = may_touch(history);
-    if (touch.ray && !change_.moved_after.empty() && test(index, node)) return index;
+    if (test(index, node, touch.ray)) return index;
     if (node.is_miss()) return index;
     update_lights(index, node, hits, touch);
     update_children(index, node, history);
@@ -43,11 +49,6 @@ class Updater {
     return touch != nullptr ? *touch : Touch{history, false, false, 0, 0};
   }
 
-  /// Rules single segments out like tunnels do, where there are tunnels.
-  [[nodiscard]] bool is_near(const Box& box, const Ray& ray) const {
-    return touches_ == nullptr || may_meet(box, change_.bounds.condition, ray.origin, ray.direction, ray.t_max);
-  }
-
   std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent) {
     const std::uint32_t index = grower_.trace(ray, parent, counters_);
     grower_.trace_lights(index, counters_);
@@ -55,17 +56,16 @@ class Updater {
   }
 
   /// The ray test: does the selection, where it is now, come before what is stored? If so, regrows the node.
-  bool test(std::uint32_t index, const PathNode& node) {
+  bool test(std::uint32_t index, const PathNode& node, bool touched) {
     TreeBlock& block = grower_.block();
     const SpawnedRay ray = block.nodes[index].ray;
     Ray segment{ray.origin, ray.direction};
     float slack = 0;
-    if (!node.is_miss()) {
+    if (touched && !node.is_miss()) {
       slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object()));
       segment.t_max = block.nodes[index].length + slack;
     }
-    if (!is_near(change_.bounds.moved, segment)) return false;
-    ++counters_.ray_tests;
+    if (!tests_.tests_ray(touched, segment)) return false;
     const Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
     if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
@@ -82,7 +82,7 @@ class Updater {
     changed_ = true;
     TreeBlock& block = grower_.block();
     if (!node.is_miss()) block.lights.resize(block.nodes[index].first_light);
-    skip_children(stored_, node);
+    counters_.culled.dropped += node.shadow_segments + skip_children(stored_, node);
     grower_.trace_from(index, meeting, counters_);
     grower_.trace_lights(index, counters_);
     return true;
@@ -102,8 +102,8 @@ class Updater {
     for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
       const std::uint32_t old = change_.old_light_index[light];
       const ShadowState before = old == kNoNode ? ShadowState::facing_away : shadow_state(node.lights, old);
-      const std::uint32_t touched = before == ShadowState::blocked ? touch.blocked : touch.open;
-      update_light(index, light, before, old == kNoNode ? 0 : old, (touched & light_bit(light)) != 0);
+      update_light(index, light, before, old == kNoNode ? 0 : old,
+                   touch.touches(before == ShadowState::blocked, light));
     }
     if (change_.lights_changed) note_lost_lights(node);
   }
@@ -114,14 +114,19 @@ class Updater {
     for (std::uint32_t old : change_.old_light_index)
       if (old != kNoNode) kept[old] = true;
     for (std::size_t old = 0; old < kept.size(); ++old)
-      if (!kept[old] && shadow_state(node.lights, old) != ShadowState::facing_away) changed_ = true;
+      if (!kept[old] && shadow_state(node.lights, old) != ShadowState::facing_away) {
+        changed_ = true;
+        ++counters_.culled.dropped;
+      }
   }
 
   /// `touched`: may the selection cross the segment, or did it so before?
   void update_light(std::uint32_t index, std::size_t light, ShadowState before, std::size_t old, bool touched) {
     ShadowSegment segment;
     if (!grower_.gathers(index, light, segment)) {
-      changed_ = changed_ || before != ShadowState::facing_away;
+      if (before == ShadowState::facing_away) return;
+      changed_ = true;
+      ++counters_.culled.dropped;
       return;
     }
     if (before == ShadowState::facing_away) {  // a new or moved light, or a surface that gathered none
@@ -129,22 +134,13 @@ class Updater {
       grower_.trace_light(index, light, segment, counters_);
       return;
     }
-    if (change_.shadows_before.empty() && change_.shadows_after.empty()) {
-      keep(index, light, segment, before, old);
-      return;
-    }
     const Ray ray{segment.origin, segment.direction, segment.t_max};
-    const bool is_blocked = before == ShadowState::blocked;
-    touched =
-        touched && ((is_blocked && is_near(change_.bounds.shadows_before, ray)) ||
-                    ((!is_blocked || grower_.grow().shadow_bits > 0) && is_near(change_.bounds.shadows_after, ray)));
-    if (!touched) {  // transparent surfaces of the selection may have stood there: the path names them
+    if (!tests_.tests_shadow(before, touched, ray).any()) {  // transparent surfaces of the selection may have stood there: the path names them
       grower_.crossings_.clear();
       before == ShadowState::filtered ? update_filters(index, light, segment, before, old)
                                       : keep(index, light, segment, before, old);
       return;
     }
-    ++counters_.ray_tests;
     if (grower_.grow().shadow_bits > 0)
       update_counted(index, light, segment, before, old);
     else
@@ -297,7 +293,7 @@ class Updater {
       const bool is_stored = node.has_child(static_cast<Branch>(b)), is_now = (now.mask >> b & 1U) != 0;
       changed_ = changed_ || is_stored != is_now;
       if (!is_now) {
-        if (is_stored) skip_tree(stored_);
+        if (is_stored) counters_.culled.dropped += skip_tree(stored_);
         continue;
       }
       const SpawnedRay& ray = now.rays[b];
@@ -307,7 +303,7 @@ class Updater {
       if (is_stored && same_ray) {
         child = update(ray, index, child_of(history, static_cast<Branch>(b)));
       } else {
-        if (is_stored) skip_tree(stored_);
+        if (is_stored) counters_.culled.dropped += skip_tree(stored_);
         changed_ = true;
         child = trace(ray, index);
       }
@@ -320,6 +316,7 @@ class Updater {
   const Touches* touches_;  // null: any segment may be touched
   StoredTree stored_;
   GrowCounters& counters_;
+  SegmentTests tests_;
   bool changed_ = false;
   std::vector<std::vector<FilterNode>> stored_filters_;  // by old light
   std::vector<LightEntry> stored_entries_;               // by old light
