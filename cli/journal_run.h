@@ -75,7 +75,7 @@ class JournalRun {
   RunReport report_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::uint64_t pixels_different_ = 0, pixels_compared_ = 0;
-  Moves rebuilt_;  // as the cache was read
+  Moves rebuilt_;                          // as the cache was read
   std::vector<const Edit*> pending_;       // of frames that are there already: to be made before the next that is not
   bool is_dragging_ = false;               // the selection of the present step is out of the ray trees
   bool follows_last_ = false;              // the frame to come follows the last one written: no edit lies between

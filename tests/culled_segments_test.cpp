@@ -190,8 +190,8 @@ std::uint64_t below_refractions(const TreeNode& before, const Scene& scene, cons
   std::uint64_t dropped = 0;
   for (const auto& [branch, child] : before.children) {
     const TreeSize size = size_of(child);
-    dropped += bends && branch == Branch::refraction ? size.rays + size.shadows
-                                                     : below_refractions(child, scene, material);
+    dropped +=
+        bends && branch == Branch::refraction ? size.rays + size.shadows : below_refractions(child, scene, material);
   }
   return dropped;
 }

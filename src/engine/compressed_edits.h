@@ -87,7 +87,7 @@ class CompressedEdits {
     ParameterSet parameters;
     std::shared_ptr<std::vector<std::uint8_t>> tiles;
   };
-  std::vector<Built> built_;                        // sets so far, the last begun last; see kMostRemembered
+  std::vector<Built> built_;                         // sets so far, the last begun last; see kMostRemembered
   std::optional<std::vector<ParameterSet>> chosen_;  // none: any set may be kept
   const CompressedImage* at_work_ = nullptr;
 };

@@ -129,9 +129,19 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   const Image& image = stored_.image();
   const GrowScene grow{rays_, nullptr, image.view.max_depth, image.view.shadow_bits, &objects_};
   const std::vector<bool> near_tiles;
-  const UpdatePass pass{
-      image,      stored_.lights(), grow,    change,     found.tasks,  stored_.classes(), stored_.index(),
-      stored_.regions(), nullptr, near_tiles, known_leaves, programs_, stored_.residency()};
+  const UpdatePass pass{image,
+                        stored_.lights(),
+                        grow,
+                        change,
+                        found.tasks,
+                        stored_.classes(),
+                        stored_.index(),
+                        stored_.regions(),
+                        nullptr,
+                        near_tiles,
+                        known_leaves,
+                        programs_,
+                        stored_.residency()};
   parallel_for(found.works.size(), [&](std::size_t tile) {
     if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);
   });

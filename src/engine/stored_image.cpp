@@ -139,8 +139,8 @@ Resident StoredImage::resident() const {
   for (const std::vector<Rgba>& colors : image_.sample_colors)
     resident.sample_colors += colors.capacity() * sizeof(Rgba);
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
-  resident.total = resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.groups +
-                   resident.tunnels + frame;
+  resident.total =
+      resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.groups + resident.tunnels + frame;
   return resident;
 }
 
