@@ -1,5 +1,6 @@
 #include "embree_calls.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <map>
@@ -14,9 +15,14 @@ using RayKey = std::array<float, 6>;  // origin and direction
 struct Calls {
   std::mutex mutex;
   bool is_counting = false;
+  std::map<const void*, const void*> device_of;  // by scene
   std::map<const void*, std::size_t> instances;  // by top level
   std::uint64_t rays = 0, shadows = 0;
-  std::set<RayKey> rays_of_one, shadows_of_one;
+  struct OfDevice {
+    std::uint64_t calls = 0;
+    std::set<RayKey> rays, shadows;
+  };
+  std::map<const void*, OfDevice> of_one;  // against levels of one object, by device
 };
 
 Calls& calls() {
@@ -31,6 +37,11 @@ RayKey key_of(const void* ray) {
   return {start[0], start[1], start[2], start[4], start[5], start[6]};
 }
 
+void add_of_one(Calls::OfDevice& device, const void* ray, bool is_shadow) {
+  ++device.calls;
+  (is_shadow ? device.shadows : device.rays).insert(key_of(ray));
+}
+
 void note(const void* scene, const void* ray, bool is_shadow) {
   Calls& all = calls();
   const std::lock_guard lock(all.mutex);
@@ -38,7 +49,7 @@ void note(const void* scene, const void* ray, bool is_shadow) {
   if (all.instances[scene] > 2)  // an object alone is there twice
     ++(is_shadow ? all.shadows : all.rays);
   else
-    (is_shadow ? all.shadows_of_one : all.rays_of_one).insert(key_of(ray));
+    add_of_one(all.of_one[all.device_of[scene]], ray, is_shadow);
 }
 
 }  // namespace
@@ -52,15 +63,24 @@ EmbreeCallCounter::~EmbreeCallCounter() {
   const std::lock_guard lock(calls().mutex);
   calls().is_counting = false;
   calls().instances.clear();
+  calls().device_of.clear();
 }
 
 EmbreeCalls EmbreeCallCounter::take() {
   Calls& all = calls();
   const std::lock_guard lock(all.mutex);
-  const EmbreeCalls taken{all.rays, all.shadows, all.rays_of_one.size() + all.shadows_of_one.size()};
+  EmbreeCalls taken{all.rays, all.shadows, 0, 0};
+  for (const auto& [device, of_one] : all.of_one) {
+    const bool has_scene = std::ranges::any_of(all.instances, [&, d = device](const auto& level) {
+      return level.second > 2 && all.device_of[level.first] == d;
+    });
+    if (has_scene)
+      taken.tests += of_one.rays.size() + of_one.shadows.size();
+    else
+      taken.objects += of_one.calls;
+  }
   all.rays = all.shadows = 0;
-  all.rays_of_one.clear();
-  all.shadows_of_one.clear();
+  all.of_one.clear();
   return taken;
 }
 
@@ -71,6 +91,7 @@ extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): the linker's names
 void __real_rtcIntersect1(void* scene, void* second, void* third);
 void __real_rtcOccluded1(void* scene, void* second, void* third);
+void* __real_rtcNewScene(void* device);
 void __real_rtcAttachGeometryByID(void* scene, void* geometry, unsigned id);
 
 // Embree 3 takes the ray last, Embree 4 second.
@@ -93,6 +114,14 @@ void __wrap_rtcOccluded1(void* scene, void* context, void* ray) {
   __real_rtcOccluded1(scene, context, ray);
 }
 #endif
+
+void* __wrap_rtcNewScene(void* device) {
+  void* scene = __real_rtcNewScene(device);
+  const std::lock_guard lock(relook::calls().mutex);
+  relook::calls().device_of[scene] = device;
+  relook::calls().instances.erase(scene);  // of another one at the same address
+  return scene;
+}
 
 void __wrap_rtcAttachGeometryByID(void* scene, void* geometry, unsigned id) {
   {

@@ -7,7 +7,8 @@ namespace relook {
 
 struct EmbreeCalls {
   std::uint64_t rays = 0, shadows = 0;  // against top levels of more than one object
-  std::uint64_t others = 0;             // different rays and segments against top levels of one object
+  std::uint64_t tests = 0;              // different rays and segments against those of one object, of the same device
+  std::uint64_t objects = 0;            // calls of devices that have no level of more than one object
 };
 
 /// Counts from its beginning to take(). One at a time.

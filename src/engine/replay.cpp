@@ -222,8 +222,8 @@ struct Replayer::Impl {
     if (!change.touches_rays()) return;
     stored.keep_paths(updates, grow(nullptr), change.rays.lights_changed);
     stored.bring_back_tunnels(updates, grow(nullptr));
-    for (const TileUpdate& update : updates)
-      if (!update.packed.empty()) compressed.note_trees(update.tile);
+    for (const TileUpdate& update : updates)  // other shadow counters alone change no colour
+      if (!update.packed.empty() && !update.shaded.empty()) compressed.note_trees(update.tile);
   }
   /// Works pixels out again that lie under the samples with new colours or, by tile, under `others`.
   void refresh_pixels(const std::vector<TileUpdate>& updates, const std::vector<ShownSamples>& others,

@@ -48,19 +48,19 @@ class TileUpdater {
     if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(path, *touches, primary, stored);
     if (!update && (task & kShade) == 0) return;
     const TreeBlock::Mark mark = block_.mark();
-    bool changed = false;
+    TreeChange what = TreeChange::none;
     std::uint32_t root = 0;
     if (update) {
       const bool tests_all = tests_all_ || !p_.change.touches_segments();  // then nothing is left to test
       const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &no_touches_;
       result_.walked_segments += p_.index.segments(path);
-      root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
-      last_changed_.set(leaf, changed);
+      root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, what);
+      last_changed_.set(leaf, what == TreeChange::all);
     } else {
       root = expand_tree(p_.grow, primary, sample, stored, block_, result_.counters);
     }
-    if (p_.keeps_trees && (changed || p_.change.rays.lights_changed)) pack_sample(root, sample);
-    if (!changed && (task & kShade) == 0) {
+    if (p_.keeps_trees && (what != TreeChange::none || p_.change.rays.lights_changed)) pack_sample(root, sample);
+    if (what != TreeChange::all && (task & kShade) == 0) {
       block_.rewind(mark);
       return;
     }

@@ -34,7 +34,7 @@ struct TileUpdate {
   std::vector<std::uint32_t> first_hit{0};
   GrowCounters counters;
   std::uint64_t walked_segments = 0;  // of the samples whose stored segments have been counted one by one
-  bool missed_tunnels = false;  // there were none to tell what to test
+  bool missed_tunnels = false;        // there were none to tell what to test
 };
 
 /// What all tiles of a pass have in common.

@@ -59,6 +59,13 @@ class Grower {
   void set_link(std::uint32_t index, std::size_t light, ShadowState state) {
     b_.lights[b_.nodes[index].first_light + light].state = state;
   }
+  /// The same with the surfaces that a segment crosses.
+  void set_crossings(std::uint32_t index, std::size_t light, const ShadowSegment& segment,
+                     std::span<const Crossing> crossings) {
+    filters_.clear();
+    for (const Crossing& crossing : crossings) filters_.push_back(filter_of(crossing));
+    set_filters(index, light, segment, filters_);
+  }
   void set_filters(std::uint32_t index, std::size_t light, const ShadowSegment& segment,
                    std::span<const FilterNode> filters) {
     LightLink& link = b_.lights[b_.nodes[index].first_light + light];
@@ -96,9 +103,7 @@ class Grower {
       set_link(index, light, ShadowState::blocked);
       return;
     }
-    filters_.clear();
-    for (const Crossing& crossing : crossings_) filters_.push_back(filter_of(crossing));
-    set_filters(index, light, segment, filters_);
+    set_crossings(index, light, segment, crossings_);
   }
 
   /// Traces the shadow segments of all nodes from `first` on: apart from the rays, since like work in a row runs
