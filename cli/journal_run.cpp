@@ -74,7 +74,9 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
   const Resident& resident = step.resident;
   trace.amounts("resident bytes", {{"ray_paths", resident.ray_paths},
                                    {"ray_trees", resident.ray_trees},
+                                   {"sample_colors", resident.sample_colors},
                                    {"color_trees", resident.color_trees},
+                                   {"groups", resident.groups},
                                    {"tunnels", resident.tunnels}});
 }
 
@@ -111,7 +113,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.threads = thread_count();
   report_.cache = cache.sizes;
   report_.cache_damage = cache.damage;
-  ray_trees_rebuilt_ = cache.ray_trees_rebuilt;
+  rebuilt_ = cache.rebuilt;
 }
 
 std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
@@ -205,7 +207,7 @@ StepResult JournalRun::edited(const StepReport& entry, std::size_t frame) {
   if (entry.place.step == 0) {
     const Frame& base = replayer_.image().frame;
     result.counters.samples_total = std::uint64_t{base.width} * base.height * report_.view.samples;
-    result.counters.rebuilt.ray_trees = ray_trees_rebuilt_;
+    result.counters.rebuilt = rebuilt_;
     result.classification.change = ChangeClass::base;
     return result;
   }

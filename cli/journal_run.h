@@ -24,7 +24,7 @@ struct CacheFacts {
   std::string scene_hash;
   CacheSizes sizes;
   std::vector<std::string> damage;
-  std::uint64_t ray_trees_rebuilt = 0;
+  Moves rebuilt;  // what was damaged
 };
 
 /// Replays one journal into one run folder.
@@ -76,7 +76,8 @@ class JournalRun {
   Replayer replayer_;
   RunReport report_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  std::uint64_t pixels_different_ = 0, pixels_compared_ = 0, ray_trees_rebuilt_ = 0;
+  std::uint64_t pixels_different_ = 0, pixels_compared_ = 0;
+  Moves rebuilt_;                          // as the cache was read
   std::vector<const Edit*> pending_;       // of frames that are there already: to be made before the next that is not
   bool is_dragging_ = false;               // the selection of the present step is out of the ray trees
   bool follows_last_ = false;              // the frame to come follows the last one written: no edit lies between

@@ -73,13 +73,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
   return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()), opened.image,
-          opened.scene_hash, opened.losses, opened.tunnels};
-}
-
-std::uint64_t samples_in(const Image& image, const std::vector<std::size_t>& tiles) {
-  std::uint64_t samples = 0;
-  for (const std::size_t tile : tiles) samples += image.trees[tile].paths.size();
-  return samples;
+          opened.scene_hash, opened.losses, opened.rebuilt, opened.tunnels};
 }
 
 /// The runs that are to be made, one a journal. Throws UsageError when anything is in the way of one.
@@ -138,7 +132,7 @@ class ReplayCommand {
     for (std::string& sentence : damage) sentence = arguments.inputs[0] + ": " + sentence + "; traced again";
     console.warn(damage);
     require_fitting(arguments, opened_);
-    facts_ = {opened_.scene_hash, cache_sizes(manifest), damage, samples_in(opened_.image, opened_.losses.tiles)};
+    facts_ = {opened_.scene_hash, cache_sizes(manifest), damage, opened_.rebuilt};
     const TraceScope checking = console.span("check journals");
     for (const Journal& journal : journals) console.warn(check_journal(*opened_.state, journal));
   }

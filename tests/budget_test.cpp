@@ -45,7 +45,7 @@ ResidencyOptions limited(const BudgetCase& c, EvictionPolicy policy, std::uint64
 
 std::uint64_t piece_bytes(const BudgetCase& c, const ViewOptions& view) {
   const Resident resident = replayer_of(c.scene, view, {}).resident();
-  return resident.ray_trees + resident.color_trees;
+  return resident.ray_trees + resident.sample_colors;
 }
 
 void expect_full_render(const Replayer& replayer, const StepResult& step, const Frame& before,
@@ -116,7 +116,7 @@ TEST(Eviction, gives_memory_back) {
   Replayer replayer = replayer_of(TestScene::spheres, {4, 5, 0}, {}, options);
   static_cast<void>(replayer.step({}, "nothing changes", "."));
   EXPECT_EQ(replayer.resident().ray_trees, 0U);
-  EXPECT_EQ(replayer.resident().color_trees, 0U);
+  EXPECT_EQ(replayer.resident().sample_colors, 0U);
 }
 
 TEST(MissingRayTrees, come_back_once_they_are_used) {

@@ -9,8 +9,7 @@
 #include "engine/render.h"
 #include "engine/replay.h"
 #include "reference_tracer.h"
-#include "test_scenes.h"
-#include "tree_reader.h"
+#include "stored_trees.h"
 
 namespace relook {
 namespace {
@@ -18,39 +17,7 @@ namespace {
 constexpr ViewOptions kView{1, 6};
 constexpr double kSlack = 1e-3;  // of barycentrics and lengths: what rounding may call a touch
 
-/// The spheres inside a large ball, so that every ray ends on a surface and its segment is known.
-SceneState closed_room() {
-  SceneState state = spheres_scene(80, 60);
-  apply_edit(state,
-             parsed_edit(R"([{"op": "add", "path": "/nodes/Room", "value": {"mesh": "Ball", "scale": [20, 20, 20]}}])"),
-             "room", ".");
-  return state;
-}
-
-Replayer replayer_of(SceneState state) {
-  Image image = preprocessed(state.scene(), kView);
-  return Replayer(std::move(state), std::move(image));
-}
-
-/// Calls visit(pixel, tree) for the only sample of every pixel.
-template <class Visit>
-void for_each_tree(const Image& image, std::size_t lights, Visit visit) {
-  for (std::size_t tile = 0; tile < image.trees.size(); ++tile) {
-    const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-    for (std::uint32_t i = 0; i < rect.pixels(); ++i) {
-      const std::uint32_t x = rect.x0 + i % (rect.x1 - rect.x0), y = rect.y0 + i / (rect.x1 - rect.x0);
-      visit(y * image.frame.width + x, read_tree(image, tile, i, lights));
-    }
-  }
-}
-
-std::vector<TreeNode> trees_by_pixel(const Replayer& replayer) {
-  const Image& image = replayer.image();
-  std::vector<TreeNode> trees(image.frame.pixels.size());
-  for_each_tree(image, replayer.state().scene().light_order.size(),
-                [&](std::uint32_t pixel, TreeNode tree) { trees[pixel] = std::move(tree); });
-  return trees;
-}
+Replayer replayer_of(SceneState state) { return replayer_of(std::move(state), kView, {}); }
 
 bool depends_on(const TreeNode& node, const Scene& scene, const std::string& material) {
   const auto made_of_it = [&](std::uint32_t object) {

@@ -164,7 +164,7 @@ void expect_same_work(const StepResult& with, const StepResult& without, std::ui
   EXPECT_EQ(a.shadow_updates, b.shadow_updates);
   EXPECT_EQ(a.ray_tests, b.ray_tests);
   EXPECT_EQ(a.samples_affected, b.samples_affected);
-  EXPECT_EQ(a.object_rays, 0U);
+  EXPECT_EQ(a.rebuilt.ray_trees, 0U);
   EXPECT_EQ(with.changed_pixels.indices(width), without.changed_pixels.indices(width));
 }
 

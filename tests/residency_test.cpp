@@ -66,6 +66,8 @@ TEST_F(Residence, keeps_within_the_limit_and_gives_back_what_was_spilled) {
   const PieceCounts counts = residency.take_counts();
   EXPECT_GE(counts.reloaded[0], 5U);
   EXPECT_GE(counts.evicted[0], 5U);
+  EXPECT_EQ(counts.evicted_bytes, counts.evicted[0] * kPieceBytes);
+  EXPECT_EQ(counts.reloaded_bytes, counts.reloaded[0] * kPieceBytes);
   EXPECT_EQ(residency.take_counts().evicted[0], 0U);
 }
 

@@ -31,9 +31,9 @@ class Plots {
   all() {
     const full = this.report.full_render_seconds;
     const stages = ["classify", "select", "test", "update", "evaluate", "write"];
-    const kinds = [["ray_paths", "ray paths"], ["ray_trees", "ray trees"], ["color_trees", "colour trees"], ["tunnels", "tunnels"]];
-    const moves = [["ray_trees", "ray trees"], ["sample_colors", "sample colours"], ["color_trees", "colour trees"], ["tunnels", "tunnels"]];
-    const moved = (what) => moves.map(([key, name]) => [name, this.column((step) => step[what][key])]);
+    const kinds = [["ray_paths", "ray paths"], ["ray_trees", "ray trees"], ["sample_colors", "sample colours"], ["color_trees", "colour trees"],
+      ["groups", "groups"], ["tunnels", "tunnels"]];
+    const moves = ["evicted", "rebuilt", "reloaded"].map((what) => [what, this.column((step) => step[what].total)]);
     const shown = [
       { title: "Time by stage", text: "Seconds of each frame. Write: what the frame waits for.", kind: "stacked", unit: page.seconds,
         series: stages.map((stage) => [stage, this.column((step) => step.seconds[stage])]) },
@@ -49,11 +49,9 @@ class Plots {
       { title: "Pixels changed", text: "Of each frame; samples affected is what was looked at again.", kind: "line", log: true, unit: page.count,
         series: [["pixels changed", this.column((step) => step.pixels_changed)], ["samples affected", this.column((step) => step.samples_affected)]] },
     ];
-    const evictions = moved("evicted"), sum = (series) => series.flatMap(([, values]) => values).reduce((a, b) => a + b, 0);
-    const returned = [["rebuilt", this.column((step) => step.rebuilt.total)], ["reloaded", this.column((step) => step.reloaded.total)]];
-    if (sum(evictions) + sum(returned) > 0)
-      shown.push({ title: "Evictions", text: "Pieces that left memory by kind, and pieces that came back: traced again, or read.", kind: "stacked",
-        unit: page.count, series: [...evictions.map(([name, values]) => [`${name} out`, values]), ...returned] });
+    if (moves.some(([, values]) => values.some((bytes) => bytes > 0)))
+      shown.push({ title: "Evictions", text: "Bytes that left memory, were worked out again, or were read back.", kind: "stacked",
+        unit: page.bytes, series: moves });
     else shown.push({ title: "Evictions", text: "None: everything stayed in memory in this run.", series: [] });
     return shown;
   }

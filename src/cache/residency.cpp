@@ -145,6 +145,7 @@ void Residency::bring_back(PieceKind kind, std::size_t tile) {
   resident_bytes_ += p.facts.bytes;
   const bool is_first = from == State::stored && !p.has_left;
   ++(is_first ? counts_.fetched : counts_.reloaded)[index_of(kind)];
+  counts_.reloaded_bytes += is_first ? 0 : p.facts.bytes;
   if (from != State::stored) return;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   fetch_seconds_per_byte_ += 0.1 * (seconds / static_cast<double>(p.facts.bytes) - fetch_seconds_per_byte_);
@@ -303,7 +304,7 @@ bool Residency::make_room_locked(std::uint64_t bytes) {
     candidates_.pop_back();
     if (options_.policy == EvictionPolicy::gdsf) gdsf_inflation_ = std::max(gdsf_inflation_, next.weight);
     if (next.victim < victims_.size())
-      counts_.others_evicted += victims_[next.victim].drop();
+      evict_other(victims_[next.victim]);
     else
       evict(next.kind, next.tile);
   }
@@ -336,6 +337,12 @@ double Residency::return_seconds(const Piece& p) const {
   return spill_ || p.rebuild_seconds == 0 ? by_disk : p.rebuild_seconds;
 }
 
+void Residency::evict_other(const Victim& victim) {
+  const std::uint64_t before = others_bytes_();
+  counts_.others_evicted += victim.drop();
+  counts_.evicted_bytes += before - std::min(before, others_bytes_());
+}
+
 bool Residency::evict(PieceKind kind, std::size_t tile) {
   Piece& p = piece(kind, tile);
   const PieceHandler& handler = kinds_[index_of(kind)].handler;
@@ -352,6 +359,7 @@ bool Residency::evict(PieceKind kind, std::size_t tile) {
   p.has_left = true;
   resident_bytes_ -= p.facts.bytes;
   ++counts_.evicted[index_of(kind)];
+  counts_.evicted_bytes += p.facts.bytes;
   return true;
 }
 

@@ -48,6 +48,7 @@ struct PieceCounts {
   std::array<std::uint64_t, kPieceKinds> evicted{}, reloaded{};
   std::array<std::uint64_t, kPieceKinds> fetched{};  // stored pieces that were used for the first time
   std::uint64_t others_evicted = 0;
+  std::uint64_t evicted_bytes = 0, reloaded_bytes = 0;  // others included
 };
 
 /// Something outside of Residency that could leave memory, too.
@@ -170,6 +171,7 @@ class Residency {
   void require_floor_locked() const;
   void list_candidates();
   bool evict(PieceKind kind, std::size_t tile);
+  void evict_other(const Victim& victim);
   [[nodiscard]] double return_seconds(const Piece& piece) const;
   void free_copy(Piece& piece);
 

@@ -139,6 +139,17 @@ CacheAnswer trace_again(const Scene& scene, const CacheLosses& losses, Image& im
   return {};
 }
 
+/// What is kept of some tiles.
+Moves all_of(const std::vector<std::size_t>& tiles, const Image& image) {
+  Moves moves;
+  for (const std::size_t tile : tiles) {
+    moves.ray_trees += image.trees[tile].paths.size();
+    ++moves.sample_colors;
+    moves.bytes += hit_bytes(image.trees[tile]) + image.sample_colors[tile].size() * sizeof(Rgba);
+  }
+  return moves;
+}
+
 }  // namespace
 
 namespace {
@@ -213,6 +224,7 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
   if (of_scene.fault != CacheFault::none) return of_scene;
   Image image = take_image(content);
   if (CacheAnswer answer = trace_again(state->scene(), losses, image); answer.fault != CacheFault::none) return answer;
+  const Moves rebuilt = all_of(losses.tiles, image);
   if (!check) {
     check.emplace(state->scene(), image.paths, image.view.shadow_bits);
     parallel_for(image.trees.size(), [&](std::size_t tile) {
@@ -226,7 +238,8 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
   }
   if (is_broken) return {CacheFault::damaged, "trees", "a hit names a triangle that its object does not have"};
   auto tunnels = StoredTunnels::of_cache(path, image.paths.size());
-  opened = {std::move(state), std::move(image), std::move(content.scene_hash), std::move(losses), std::move(tunnels)};
+  opened = {std::move(state),  std::move(image), std::move(content.scene_hash),
+            std::move(losses), rebuilt,          std::move(tunnels)};
   return {};
 }
 

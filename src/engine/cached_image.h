@@ -6,6 +6,7 @@
 #include "cache/cache.h"
 #include "cache/residency.h"
 #include "cache/stored_tunnels.h"
+#include "engine/counters.h"
 #include "engine/image.h"
 #include "engine/render.h"
 #include "scene/state.h"
@@ -39,10 +40,12 @@ struct OpenedCache {
   Image image;
   std::string scene_hash;
   CacheLosses losses;  // made good
+  Moves rebuilt;       // for that
   std::shared_ptr<StoredTunnels> tunnels;  // null: the cache has none
 };
 /// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults, those of
-/// tunnels, which are not read otherwise, too. On a fault `opened` is untouched. `residency`: tiles leave memory for it as they are read; null: all are kept.
+/// tunnels, which are not read otherwise, too. On a fault `opened` is untouched. `residency`: tiles leave memory for it
+/// as they are read; null: all are kept.
 [[nodiscard]] CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened,
                                      Residency* residency = nullptr);
 

@@ -1,29 +1,11 @@
 #include "engine/change.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "trace/box_range.h"
 
 namespace relook {
 namespace {
-
-/// A box around an object, in the world, with room for rounding.
-Box world_bounds(const RayObject& object) {
-  const Box& local = object.mesh->bounds;
-  Box box;
-  for (unsigned corner = 0; corner < 8 && !local.isEmpty(); ++corner) {
-    const Point at((corner & 1U) != 0 ? local.max.x : local.min.x, (corner & 2U) != 0 ? local.max.y : local.min.y,
-                   (corner & 4U) != 0 ? local.max.z : local.min.z);
-    box.extendBy(at * object.to_world);
-  }
-  if (box.isEmpty()) return box;
-  float largest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    largest = std::max(largest, std::max(std::fabs(box.min[axis]), std::fabs(box.max[axis])));
-  // The object's offset knows how large the numbers are that cancel on the way to the world.
-  const float margin = std::max(0x1p-16F * largest, 8 * object.offset) * object.condition;
-  const Point around(margin, margin, margin);
-  return Box(box.min - around, box.max + around);
-}
 
 /// What decides where a cut-out surface has holes.
 bool same_holes(const Material& a, const Material& b) {

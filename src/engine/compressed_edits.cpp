@@ -7,6 +7,8 @@ namespace {
 
 /// Sets that reach few samples, or none, are cheap to keep, but not for ever.
 constexpr std::size_t kMostSets = 64;
+/// Of so many sets it is known what has been built before; an older one counts as new.
+constexpr std::size_t kMostRemembered = 1024;
 
 /// Could another structure of the material make other samples depend on the parameters?
 bool may_reach_others(const ParameterSet& parameters, MaterialId restructured) {
@@ -45,11 +47,23 @@ CompressedImage& CompressedEdits::of(const ParameterSet& parameters, std::uint64
   if (found == images_.end()) {
     images_.push_back(std::make_shared<CompressedImage>(parameters, tile_count_, sets_++));
     found = std::prev(images_.end());
+    (*found)->were_built = tiles_built(parameters);
   }
   (*found)->last_change = change_ = change;
   ++(*found)->uses;
   at_work_ = found->get();
   return **found;
+}
+
+std::shared_ptr<std::vector<std::uint8_t>> CompressedEdits::tiles_built(const ParameterSet& parameters) {
+  const auto found = std::ranges::find(built_, parameters, &Built::parameters);
+  if (found != built_.end()) {
+    std::rotate(found, std::next(found), built_.end());
+  } else {
+    if (built_.size() == kMostRemembered) built_.erase(built_.begin());
+    built_.push_back({parameters, std::make_shared<std::vector<std::uint8_t>>(tile_count_, std::uint8_t{0})});
+  }
+  return built_.back().tiles;
 }
 
 void CompressedEdits::note_colors(const ColorChange& change) {

@@ -36,6 +36,7 @@ struct CompressedImage {
   ParameterSet parameters;
   SplitTable splits;
   std::vector<CompressedTile> tiles;
+  std::shared_ptr<std::vector<std::uint8_t>> were_built;  // by tile: were trees for these parameters kept before?
   std::uint64_t last_change = 0, uses = 0;
 };
 
@@ -74,6 +75,7 @@ class CompressedEdits {
   [[nodiscard]] std::uint64_t samples() const;
 
  private:
+  [[nodiscard]] std::shared_ptr<std::vector<std::uint8_t>> tiles_built(const ParameterSet& parameters);
   void erase(const std::function<bool(const CompressedImage&)>& condition);
 
   std::size_t tile_count_;
@@ -81,6 +83,11 @@ class CompressedEdits {
   std::size_t sets_ = 0;  // so far
   std::atomic<std::uint64_t> bytes_ = 0;
   std::vector<std::shared_ptr<CompressedImage>> images_;
+  struct Built {
+    ParameterSet parameters;
+    std::shared_ptr<std::vector<std::uint8_t>> tiles;
+  };
+  std::vector<Built> built_;                         // sets so far, the last begun last; see kMostRemembered
   std::optional<std::vector<ParameterSet>> chosen_;  // none: any set may be kept
   const CompressedImage* at_work_ = nullptr;
 };

@@ -7,7 +7,15 @@ Moves& Moves::operator+=(const Moves& other) {
   sample_colors += other.sample_colors;
   color_trees += other.color_trees;
   tunnels += other.tunnels;
+  bytes += other.bytes;
   return *this;
+}
+
+Moves rebuilt_trees(const GrowCounters& counters) {
+  Moves rebuilt;
+  rebuilt.ray_trees = counters.trees_rebuilt;
+  rebuilt.bytes = counters.hits_rebuilt * sizeof(Hit);
+  return rebuilt;
 }
 
 Counters& Counters::operator+=(const Counters& other) {
@@ -18,7 +26,7 @@ Counters& Counters::operator+=(const Counters& other) {
   by_tunnels += other.by_tunnels;
   ray_tests += other.ray_tests;
   ray_tests_culled += other.ray_tests_culled;
-  culled_by_tunnels += other.culled_by_tunnels;
+  culled += other.culled;
   ray_updates += other.ray_updates;
   shadow_updates += other.shadow_updates;
   object_rays += other.object_rays;

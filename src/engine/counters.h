@@ -3,27 +3,32 @@
 #include <cstdint>
 
 #include "region/quadtree.h"
+#include "trace/grow.h"
 
 namespace relook {
 
-/// What left memory or came back. Colour trees and rebuilt ray trees one by one; all else tile by tile.
+/// What left memory or came back. Colour trees and rebuilt ray trees one by one; all else tile by tile. `bytes`: of all
+/// together.
 struct Moves {
-  std::uint64_t ray_trees = 0, sample_colors = 0, color_trees = 0, tunnels = 0;
+  std::uint64_t ray_trees = 0, sample_colors = 0, color_trees = 0, tunnels = 0, bytes = 0;
   Moves& operator+=(const Moves& other);
 };
+
+/// Ray trees whose hits were found again.
+[[nodiscard]] Moves rebuilt_trees(const GrowCounters& counters);
 
 struct Counters {
   std::uint64_t samples_total = 0, samples_affected = 0;  // affected: visited because they may change
   std::uint64_t pixels_changed = 0;                       // pixels with at least one different bit
   RegionCounters by_groups, by_tunnels;                   // regions visited and culled by either
   std::uint64_t ray_tests = 0, ray_tests_culled = 0;      // stored segments tested against the selection only, or not
-  std::uint64_t culled_by_tunnels = 0;                    // of those not tested; the others the edit's class rules out
+  CulledSegments culled;                                  // of those not tested, by what ruled them out
   std::uint64_t ray_updates = 0;                          // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree
   std::uint64_t color_trees_evaluated = 0;
   std::uint64_t tunnels_read = 0;  // tiles whose tunnels the cache holds and that were used for the first time
-  Moves evicted, rebuilt, reloaded;
+  Moves evicted, rebuilt, reloaded;  // rebuilt: worked out again after it had left or had become invalid
 
   Counters& operator+=(const Counters& other);
 };
@@ -34,7 +39,8 @@ struct Seconds {
 
 /// Bytes held in memory by kind.
 struct Resident {
-  std::uint64_t ray_paths = 0, ray_trees = 0, color_trees = 0, tunnels = 0, total = 0;
+  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, color_trees = 0, groups = 0, tunnels = 0;
+  std::uint64_t total = 0;  // the frame included
 };
 
 }  // namespace relook

@@ -5,12 +5,7 @@ namespace {
 
 std::uint32_t count_segments(std::span<const std::uint32_t> path, const PathLayout& layout) {
   std::uint32_t segments = 0;
-  for (PathCursor cursor(path, layout); !cursor.at_end();) {
-    const PathNode node = cursor.next();
-    ++segments;
-    for (std::size_t light = 0; !node.is_miss() && light < layout.lights; ++light)
-      segments += shadow_state(node.lights, light) != ShadowState::facing_away ? 1U : 0U;
-  }
+  for (PathCursor cursor(path, layout); !cursor.at_end();) segments += cursor.next().segments();
   return segments;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <utility>
 
 #include "base/parallel.h"
 #include "engine/image_pieces.h"
@@ -137,6 +138,7 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
                         change,
                         found.tasks,
                         stored_.classes(),
+                        stored_.index(),
                         stored_.regions(),
                         nullptr,
                         near_tiles,
@@ -161,6 +163,7 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   std::vector<TileMask> changed(tiles.size());
   std::vector<std::size_t> samples(tiles.size());
   std::vector<GrowCounters> grown(tiles.size());
+  std::vector<Moves> rebuilt(tiles.size()), evicted(tiles.size());
   result.dependent.resize(kept.tiles.size());
   result.touched.resize(kept.tiles.size());
   Room room(compressed_.most_samples());
@@ -176,6 +179,8 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
       TileCompressor compressor(pass, tiles[i], kept, *own);
       compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
       grown[i] += compressor.counters();
+      if (std::exchange((*kept.were_built)[tiles[i]], std::uint8_t{1}) != 0)
+        rebuilt[i] = {0, 0, tile.samples.size(), 0, tile.bytes};
     }
     if (evaluates) {
       const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
@@ -185,20 +190,24 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
                                           tile.build_seconds);
     samples[i] = tile.samples.size();
     result.dependent[tiles[i]] = tile.leaves;
-    if (!room.take(samples[i]) || !stored_.residency().make_room(0))
-      compressed_.drop(tile);  // at once, so that what cannot be kept does not pile up
+    if (room.take(samples[i]) && stored_.residency().make_room(0)) return;
+    evicted[i] = {0, 0, samples[i], 0, tile.bytes};
+    compressed_.drop(tile);  // at once, so that what cannot be kept does not pile up
   });
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     result.changed_pixels.add(tiles[i], changed[i]);
     result.counters.samples_affected += samples[i];
     result.counters.object_rays += grown[i].object_rays;
-    result.counters.rebuilt.ray_trees += grown[i].trees_rebuilt;
-    if (!kept.tiles[tiles[i]].is_valid) result.counters.evicted.color_trees += samples[i];
+    result.counters.rebuilt += rebuilt_trees(grown[i]);
+    result.counters.rebuilt += rebuilt[i];
+    result.counters.evicted += evicted[i];
   }
   result.counters.color_trees_evaluated = result.counters.samples_affected;
   if (!found.works.empty())
     selection_.keep(change, std::move(found.tasks), result.dependent, result.seconds.select + result.seconds.test);
+  const std::uint64_t bytes_before = compressed_.bytes();
   result.counters.evicted.color_trees += compressed_.trim();
+  result.counters.evicted.bytes += bytes_before - compressed_.bytes();
   watch.lap(result.seconds.evaluate);
 }
 

@@ -1,6 +1,5 @@
 #include "engine/regions.h"
 
-#include <atomic>
 #include <chrono>
 
 #include "base/memory.h"
@@ -94,17 +93,17 @@ bool ImageRegions::may_have_tunnels(const Image& image) const {
   return !relook::cell_levels(options_.shape(), image.frame.width, image.frame.height).empty();
 }
 
-std::size_t ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
+std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
   cell_levels_ = cell_levels(options_.shape(), image.frame.width, image.frame.height);
-  if (cell_levels_.empty()) return 0;
+  if (cell_levels_.empty()) return {};
   if (has_tunnels()) offer(nullptr, 0);  // these have been used up
   add_pieces(image.trees.size());
   lights_ = light_ends(grow.scene.scene());
   mean_area_ = 0;
-  std::atomic<std::size_t> lost = 0;
+  std::vector<std::uint8_t> is_lost(tunnels_.size(), 0);
   parallel_for(tunnels_.size(), [&](std::size_t tile) {
     if (take_stored(tile)) return;
-    lost += stored_ && !stale_[tile].all() ? 1 : 0;
+    is_lost[tile] = stored_ && !stale_[tile].all() ? 1 : 0;
     build(image, grow, tile, class_of);
   });
   measure_areas();
@@ -115,6 +114,9 @@ std::size_t ImageRegions::build_tunnels(const Image& image, const GrowScene& gro
   const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
   image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
                                  [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
+  std::vector<std::size_t> lost;
+  for (std::size_t tile = 0; tile < is_lost.size(); ++tile)
+    if (is_lost[tile] != 0) lost.push_back(tile);
   return lost;
 }
 

@@ -43,8 +43,9 @@ class ImageRegions {
   /// Groups of all tiles, afresh. `class_of`: see PathGroups.
   void build_groups(const Image& image, const ClassOf& class_of);
   /// Tunnels of all tiles: those that are stored and still hold are there when they are first used, the others are built
-  /// afresh. `grow`: the scene in which the image's trees hold. Returns how many tiles' were stored and cannot be read.
-  std::size_t build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
+  /// afresh. `grow`: the scene in which the image's trees hold. Returns the tiles whose tunnels
+  /// were stored and cannot be read.
+  std::vector<std::size_t> build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
   /// Tunnels of the image as it is now, in a cache. Comes before build_tunnels().
   void offer(std::shared_ptr<StoredTunnels> stored, std::size_t tiles);
   /// The stored ones do not hold any more: paths have other ids, or lights have changed.

@@ -103,7 +103,7 @@ struct Replayer::Impl {
     const std::vector<LightEnd> ends = light_ends(state.scene());
     const bool uses_tunnels =
         stored.regions().may_have_tunnels(image()) && change.touches_segments() && !change.rays.lights_changed;
-    if (uses_tunnels) {
+    if (change.touches_segments()) {
       boxes = boxes_of(change, rays, absent);
       boxes.count_blockers = image().view.shadow_bits > 0;
       change.rays.bounds = {boxes.moved.all, boxes.shadows_before.all, boxes.shadows_after.all, boxes.condition};
@@ -120,6 +120,7 @@ struct Replayer::Impl {
                           change,
                           tasks,
                           stored.classes(),
+                          stored.index(),
                           stored.regions(),
                           uses_tunnels ? &tunnel_test : nullptr,
                           near_tiles,
@@ -145,7 +146,7 @@ struct Replayer::Impl {
       if (keeps_trees) stored.keep_hits(update);
     });
     watch.lap(change.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-    count(updates, works, uses_tunnels, result);
+    count(updates, works, change.touches_segments(), result);
     std::vector<Leaves> leaves;
     for (const TileWork& work : works) leaves.push_back(work.by_path);
     selection.keep(change, std::move(tasks), std::move(leaves), result.seconds.select + result.seconds.test);
@@ -157,8 +158,8 @@ struct Replayer::Impl {
     residency.expect(PieceKind::sample_colors, tile);
   }
 
-  /// `works`: by tile.
-  void count(const std::vector<TileUpdate>& updates, const std::vector<TileWork>& works, bool uses_tunnels,
+  /// `works`: by tile. `touches_segments`: what of them nobody looked at, tunnels have ruled out.
+  void count(const std::vector<TileUpdate>& updates, const std::vector<TileWork>& works, bool touches_segments,
              StepResult& result) const {
     Counters& counters = result.counters;
     result.dependent.resize(works.size());
@@ -172,20 +173,26 @@ struct Replayer::Impl {
       counters.by_groups += work.by_groups;
       counters.by_tunnels += work.by_tunnels;
     }
-    std::uint64_t tests = 0;
+    std::uint64_t tests = 0, left_out = stored.segments();
+    CulledSegments culled;
     for (const TileUpdate& update : updates) {
       counters.samples_affected += update.shaded.size();
       counters.color_trees_evaluated += update.shaded.size();
+      const std::uint64_t walked = update.counters.ray_tests + update.counters.culled.sum();
+      require(walked == update.walked_segments, "each stored segment is tested, or culled for one reason");
+      require(walked <= stored.segments(update.tile), "each stored segment is counted once");
+      left_out -= walked;
       tests += update.counters.ray_tests;
+      culled += update.counters.culled;
       counters.ray_updates += update.counters.ray_updates;
       counters.shadow_updates += update.counters.shadow_updates;
       counters.object_rays += update.counters.object_rays;
-      counters.rebuilt.ray_trees += update.counters.trees_rebuilt;
+      counters.rebuilt += rebuilt_trees(update.counters);
     }
-    require(tests <= stored.segments(), "each stored segment is tested once at most");
+    (touches_segments ? culled.tunnels : culled.by_class) += left_out;
     counters.ray_tests += tests;
-    counters.ray_tests_culled += stored.segments() - tests;
-    if (uses_tunnels) counters.culled_by_tunnels += stored.segments() - tests;
+    counters.ray_tests_culled += culled.sum();
+    counters.culled += culled;
   }
 
   /// Applies the edit to the scene and finds what it means.
@@ -222,8 +229,8 @@ struct Replayer::Impl {
     if (!change.touches_rays()) return;
     stored.keep_paths(updates, grow(nullptr), change.rays.lights_changed);
     stored.bring_back_tunnels(updates, grow(nullptr));
-    for (const TileUpdate& update : updates)
-      if (!update.packed.empty()) compressed.note_trees(update.tile);
+    for (const TileUpdate& update : updates)  // other shadow counters alone change no colour
+      if (!update.packed.empty() && !update.shaded.empty()) compressed.note_trees(update.tile);
   }
   /// Works pixels out again that lie under the samples with new colours or, by tile, under `others`.
   void refresh_pixels(const std::vector<TileUpdate>& updates, const std::vector<ShownSamples>& others,
@@ -298,12 +305,13 @@ struct Replayer::Impl {
     const PieceCounts moves = residency.take_counts();
     const auto of = [](const auto& counts, PieceKind kind) { return counts[static_cast<std::size_t>(kind)]; };
     counters.evicted += {of(moves.evicted, PieceKind::ray_trees), of(moves.evicted, PieceKind::sample_colors),
-                         moves.others_evicted, of(moves.evicted, PieceKind::tunnels)};
+                         moves.others_evicted, of(moves.evicted, PieceKind::tunnels), moves.evicted_bytes};
     counters.tunnels_read += of(moves.fetched, PieceKind::tunnels);
-    counters.rebuilt.tunnels += stored.take_rebuilt_tunnels();
     counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees), of(moves.reloaded, PieceKind::sample_colors), 0,
-                          of(moves.reloaded, PieceKind::tunnels)};
-    if (counters.ray_tests + counters.ray_tests_culled == 0) counters.ray_tests_culled = stored.segments();  // no pass
+                          of(moves.reloaded, PieceKind::tunnels), moves.reloaded_bytes};
+    counters.rebuilt += stored.take_rebuilt();
+    if (counters.ray_tests + counters.ray_tests_culled > 0) return;
+    counters.ray_tests_culled = counters.culled.by_class = stored.segments();  // no pass looked at any
   }
 
   /// Makes a change also put the lifted objects, where they are now, back into the ray trees.

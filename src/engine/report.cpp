@@ -34,7 +34,9 @@ Json seconds_json(const Seconds& seconds) {
 Json resident_json(const Resident& resident) {
   return {{"ray_paths", resident.ray_paths},
           {"ray_trees", resident.ray_trees},
+          {"sample_colors", resident.sample_colors},
           {"color_trees", resident.color_trees},
+          {"groups", resident.groups},
           {"tunnels", resident.tunnels},
           {"total", resident.total}};
 }
@@ -44,7 +46,7 @@ Json moves_json(const Moves& moves) {
           {"sample_colors", moves.sample_colors},
           {"color_trees", moves.color_trees},
           {"tunnels", moves.tunnels},
-          {"total", moves.ray_trees + moves.sample_colors + moves.color_trees + moves.tunnels}};
+          {"total", moves.bytes}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
@@ -77,44 +79,46 @@ Json number_json(const StepReport& step, bool of_drag) {
 Json step_json(const StepReport& step) {
   const Counters& counters = step.counters;
   const auto frame = step.files.find(step.frame);
-  return {
-      {"step", step.place.step},
-      {"name", step.name},
-      {"class", change_class_name(step.change)},
-      {"reasons", step.reasons},
-      {"drag_frame", number_json(step, true)},
-      {"wedge_frame", number_json(step, false)},
-      {"frame", step.frame},
-      {"frame_hash", frame == step.files.end() ? "" : frame->second.hash},
-      {"preview", step.preview},
-      {"edits", step.edits_hash},
-      {"files", files_json(step.files)},
-      {"command", step.command},
-      {"samples_total", counters.samples_total},
-      {"samples_affected", counters.samples_affected},
-      {"pixels_changed", counters.pixels_changed},
-      {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
-      {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
-      {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
-      {"ray_tests", counters.ray_tests},
-      {"ray_tests_culled", counters.ray_tests_culled},
-      {"ray_tests_culled_by",
-       {{"tunnels", counters.culled_by_tunnels}, {"class", counters.ray_tests_culled - counters.culled_by_tunnels}}},
-      {"ray_updates", counters.ray_updates},
-      {"shadow_updates", counters.shadow_updates},
-      {"object_rays", counters.object_rays},
-      {"color_trees_evaluated", counters.color_trees_evaluated},
-      {"tunnels_read", counters.tunnels_read},
-      {"seconds", seconds_json(step.seconds)},
-      {"resident", resident_json(step.resident)},
-      {"evicted", moves_json(counters.evicted)},
-      {"rebuilt", moves_json(counters.rebuilt)},
-      {"reloaded", moves_json(counters.reloaded)},
-      {"peak_rss", step.peak_rss_bytes},
-      {"resumed", false},
-      {"overlays", step.has_overlays},
-      {"verify_percent", or_null(step.verify_percent)},
-      {"verify", verify_json(step.verify)}};
+  return {{"step", step.place.step},
+          {"name", step.name},
+          {"class", change_class_name(step.change)},
+          {"reasons", step.reasons},
+          {"drag_frame", number_json(step, true)},
+          {"wedge_frame", number_json(step, false)},
+          {"frame", step.frame},
+          {"frame_hash", frame == step.files.end() ? "" : frame->second.hash},
+          {"preview", step.preview},
+          {"edits", step.edits_hash},
+          {"files", files_json(step.files)},
+          {"command", step.command},
+          {"samples_total", counters.samples_total},
+          {"samples_affected", counters.samples_affected},
+          {"pixels_changed", counters.pixels_changed},
+          {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
+          {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
+          {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
+          {"ray_tests", counters.ray_tests},
+          {"ray_tests_culled", counters.ray_tests_culled},
+          {"ray_tests_culled_by",
+           {{"tunnels", counters.culled.tunnels},
+            {"boxes", counters.culled.boxes},
+            {"dropped", counters.culled.dropped},
+            {"class", counters.culled.by_class}}},
+          {"ray_updates", counters.ray_updates},
+          {"shadow_updates", counters.shadow_updates},
+          {"object_rays", counters.object_rays},
+          {"color_trees_evaluated", counters.color_trees_evaluated},
+          {"tunnels_read", counters.tunnels_read},
+          {"seconds", seconds_json(step.seconds)},
+          {"resident", resident_json(step.resident)},
+          {"evicted", moves_json(counters.evicted)},
+          {"rebuilt", moves_json(counters.rebuilt)},
+          {"reloaded", moves_json(counters.reloaded)},
+          {"peak_rss", step.peak_rss_bytes},
+          {"resumed", false},
+          {"overlays", step.has_overlays},
+          {"verify_percent", or_null(step.verify_percent)},
+          {"verify", verify_json(step.verify)}};
 }
 
 Json options_json(const RunReport& report) {

@@ -134,10 +134,13 @@ Resident StoredImage::resident() const {
     resident.ray_paths += tile.paths.size() * sizeof(PathId);
     resident.ray_trees += hit_bytes(tile);
   }
-  resident.tunnels = regions_.group_bytes() + regions_.tunnel_bytes();
-  for (const std::vector<Rgba>& colors : image_.sample_colors) resident.color_trees += colors.capacity() * sizeof(Rgba);
+  resident.groups = regions_.group_bytes();
+  resident.tunnels = regions_.tunnel_bytes();
+  for (const std::vector<Rgba>& colors : image_.sample_colors)
+    resident.sample_colors += colors.capacity() * sizeof(Rgba);
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
-  resident.total = resident.ray_paths + resident.ray_trees + resident.color_trees + resident.tunnels + frame;
+  resident.total =
+      resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.groups + resident.tunnels + frame;
   return resident;
 }
 
@@ -152,10 +155,15 @@ void StoredImage::classify_paths(const GrowScene& scene) {
   index_paths();
   regions_.build_groups(image_, class_of());
   if (regions_.options().tunnels < 2) return;  // not for one path
-  if (regions_.has_tunnels())
-    build_tunnels(scene);
-  else
+  if (!regions_.has_tunnels()) {
     regions_.forget_stored();
+    return;
+  }
+  build_tunnels(scene);
+  for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) {
+    const auto lease = residency_.use(PieceKind::tunnels, tile);
+    note_rebuilt_tunnels(tile);
+  }
 }
 
 void StoredImage::index_paths() {
@@ -208,7 +216,7 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
     const TileUpdate& update = updates[k];
     if (update.packed.empty()) return;
     count_segments(update.tile);
-    rebuilt_tunnels_ += regions_.update(image_, scene, update.tile, leaves_of(update.tile, update.packed), class_of());
+    update_regions(update.tile, leaves_of(update.tile, update.packed), scene);
   });
   regions_.update_image(changed);
   segments_ = 0;
@@ -220,8 +228,33 @@ void StoredImage::bring_back_tunnels(const std::vector<TileUpdate>& updates, con
   parallel_for(updates.size(), [&](std::size_t k) {
     const TileUpdate& update = updates[k];
     if (update.missed_tunnels && update.packed.empty() && residency_.is_worth_room(PieceKind::tunnels, update.tile, 0))
-      rebuilt_tunnels_ += regions_.update(image_, scene, update.tile, {}, class_of());
+      update_regions(update.tile, {}, scene);
   });
+}
+
+void StoredImage::update_regions(std::size_t tile, const Leaves& changed, const GrowScene& scene) {
+  if (!regions_.update(image_, scene, tile, changed, class_of())) return;
+  const auto lease = residency_.use(PieceKind::tunnels, tile);
+  note_rebuilt_tunnels(tile);
+}
+
+void StoredImage::build_tunnels(const GrowScene& scene) {
+  for (const std::size_t tile : regions_.build_tunnels(image_, scene, class_of())) {
+    const auto lease = residency_.use(PieceKind::tunnels, tile);
+    note_rebuilt_tunnels(tile);
+  }
+}
+
+void StoredImage::note_rebuilt_tunnels(std::size_t tile) {
+  ++rebuilt_tunnels_;
+  rebuilt_tunnel_bytes_ += regions_.tunnels(tile).bytes();
+}
+
+Moves StoredImage::take_rebuilt() {
+  Moves rebuilt;
+  rebuilt.tunnels = rebuilt_tunnels_.exchange(0);
+  rebuilt.bytes = rebuilt_tunnel_bytes_.exchange(0);
+  return rebuilt;
 }
 
 Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {

@@ -41,8 +41,9 @@ class StoredImage {
     return {rays, image_.paths, index_, lights_, image_.view.shadow_bits, classes_};
   }
   [[nodiscard]] std::uint64_t segments() const { return segments_; }
+  [[nodiscard]] std::uint64_t segments(std::size_t tile) const { return tile_segments_[tile]; }
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
-  /// Bytes; colours of samples count as colour trees.
+  /// Colour trees are elsewhere.
   [[nodiscard]] Resident resident() const;
 
   /// For objects that have been added. `atoms`: of all objects; the known ones keep theirs for now.
@@ -54,9 +55,7 @@ class StoredImage {
   /// Tunnels of the image as it is now. Requires: the residency is watched.
   void offer_tunnels(std::shared_ptr<StoredTunnels> stored) { regions_.offer(std::move(stored), image_.trees.size()); }
   /// Requires: the trees hold in `scene`.
-  void build_tunnels(const GrowScene& scene) {
-    rebuilt_tunnels_ += regions_.build_tunnels(image_, scene, class_of());
-  }
+  void build_tunnels(const GrowScene& scene);
 
   /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees. The others
   /// stay without.
@@ -74,8 +73,8 @@ class StoredImage {
   void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
   /// Of tiles that missed theirs and have no changed trees, which keep_paths() sees to. `scene`: in which trees hold.
   void bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene);
-  /// Tiles whose tunnels were missing and have been built again since the last call.
-  [[nodiscard]] std::uint64_t take_rebuilt_tunnels() { return rebuilt_tunnels_.exchange(0); }
+  /// Tunnels that were worked out again since the last call: they had left memory, or paths were numbered afresh.
+  [[nodiscard]] Moves take_rebuilt();
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
   void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
   /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
@@ -92,6 +91,8 @@ class StoredImage {
   void classify_paths(const GrowScene& scene);
   void count_segments(std::size_t tile);
   void drop_unused_paths(const GrowScene& scene);
+  void update_regions(std::size_t tile, const Leaves& changed, const GrowScene& scene);
+  void note_rebuilt_tunnels(std::size_t tile);
   void find_hits(std::size_t tile, const GrowScene& scene, GrowCounters& counters);
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
 
@@ -105,8 +106,8 @@ class StoredImage {
   std::vector<std::uint64_t> tile_segments_;
   std::vector<std::uint8_t> stays_without_hits_;   // by tile
   std::vector<std::uint32_t> found_again_;         // by tile: samples, since its hits have been missing
-  std::atomic<std::uint64_t> rebuilt_tunnels_ = 0;
   std::atomic<double> hit_seconds_ = kHitSeconds;  // measured as hits are found again
+  std::atomic<std::uint64_t> rebuilt_tunnels_ = 0, rebuilt_tunnel_bytes_ = 0;
   std::uint64_t segments_ = 0, samples_ = 0;
   std::size_t compact_paths_;  // size of the path table when it last held no unused paths
 };

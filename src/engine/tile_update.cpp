@@ -47,20 +47,22 @@ class TileUpdater {
     bool update = (task & kUpdateTree) != 0 || tests_all_;
     const StoredTree stored = stored_tree(path, primary, sample, update || touches != nullptr);
     // Where the last tree has changed, this one probably has, too: no use in asking first.
-    if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(*touches, primary, stored);
+    if (!update && touches != nullptr) update = last_changed_.test(leaf) || probe(path, *touches, primary, stored);
     if (!update && (task & kShade) == 0) return;
     const TreeBlock::Mark mark = block_.mark();
-    bool changed = false;
+    TreeChange what = TreeChange::none;
     std::uint32_t root = 0;
     if (update) {
-      const Touches* tested = tests_all_ ? nullptr : touches != nullptr ? touches : &no_touches_;
-      root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, changed);
-      last_changed_.set(leaf, changed);
+      const bool tests_all = tests_all_ || !p_.change.touches_segments();  // then nothing is left to test
+      const Touches* tested = tests_all ? nullptr : touches != nullptr ? touches : &no_touches_;
+      result_.walked_segments += p_.index.segments(path);
+      root = update_tree(p_.grow, p_.change.rays, tested, primary, sample, stored, block_, result_.counters, what);
+      last_changed_.set(leaf, what == TreeChange::all);
     } else {
       root = expand_tree(p_.grow, primary, sample, stored, block_, result_.counters);
     }
-    if (p_.keeps_trees && (changed || p_.change.rays.lights_changed)) pack_sample(root, sample);
-    if (!changed && (task & kShade) == 0) {
+    if (p_.keeps_trees && (what != TreeChange::none || p_.change.rays.lights_changed)) pack_sample(root, sample);
+    if (what != TreeChange::all && (task & kShade) == 0) {
       block_.rewind(mark);
       return;
     }
@@ -89,10 +91,11 @@ class TileUpdater {
   }
 
   /// The tests of a tree that is then updated are counted there.
-  bool probe(const Touches& touches, const SpawnedRay& primary, const StoredTree& stored) {
+  bool probe(PathId path, const Touches& touches, const SpawnedRay& primary, const StoredTree& stored) {
     GrowCounters counters;
     if (probe_tree(p_.grow, p_.change.rays, touches, primary, stored, counters)) return true;
-    result_.counters.ray_tests += counters.ray_tests;
+    result_.counters += counters;
+    result_.walked_segments += p_.index.segments(path);
     return false;
   }
 

@@ -35,7 +35,8 @@ struct TileUpdate {
   std::vector<Hit> hits;
   std::vector<std::uint32_t> first_hit{0};
   GrowCounters counters;
-  bool missed_tunnels = false;  // there should have been some to tell what to test
+  std::uint64_t walked_segments = 0;  // of the samples whose stored segments have been counted one by one
+  bool missed_tunnels = false;        // there should have been some to tell what to test
 };
 
 /// What all tiles of a pass have in common.
@@ -46,6 +47,7 @@ struct UpdatePass {
   const StepChange& change;
   const PathTasks& tasks;
   const PathClasses& classes;
+  const PathIndex& index;
   const ImageRegions& regions;
   const TunnelTest* tunnel_test = nullptr;            // null: without tunnels, every segment is tested
   const std::vector<bool>& near_tiles;                // with tunnels: those that the change may touch

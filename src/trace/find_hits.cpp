@@ -17,9 +17,10 @@ HitFinder::HitFinder(const GrowScene& grow, const RayChange& change, GrowCounter
 void HitFinder::find(const SpawnedRay& primary, const PathCursor& path, std::vector<Hit>& hits) {
   cursor_ = path;
   hits_ = &hits;
-  const std::uint64_t rays_before = counters_.object_rays;
+  const std::uint64_t found_before = rays_.found();
   find_node(primary, primary);
-  if (counters_.object_rays > rays_before) ++counters_.trees_rebuilt;
+  if (rays_.found() > found_before) ++counters_.trees_rebuilt;
+  counters_.hits_rebuilt += rays_.found() - found_before;
 }
 
 /// The ray to a node as it was and as it is: they differ in their Fresnel products alone.

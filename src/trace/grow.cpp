@@ -46,6 +46,7 @@ class Expander {
     grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
   }
+  [[nodiscard]] std::uint64_t found() const { return rays_.found(); }
 
  private:
   void find_filters(std::span<const std::uint32_t> objects, const ShadowSegment& segment) {
@@ -80,9 +81,10 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
 
 std::uint32_t expand_tree(const GrowScene& grow, const SpawnedRay& primary, std::uint32_t sample, StoredTree stored,
                           TreeBlock& block, GrowCounters& counters) {
-  const std::uint64_t rays_before = counters.object_rays;
-  const std::uint32_t root = Expander(grow, sample, stored, block, counters).expand(primary, kNoNode);
-  if (counters.object_rays > rays_before) ++counters.trees_rebuilt;
+  Expander expander(grow, sample, stored, block, counters);
+  const std::uint32_t root = expander.expand(primary, kNoNode);
+  if (expander.found() > 0) ++counters.trees_rebuilt;
+  counters.hits_rebuilt += expander.found();
   return root;
 }
 

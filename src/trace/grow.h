@@ -8,6 +8,7 @@
 
 #include "trace/object_levels.h"
 #include "trace/path_cursor.h"
+#include "trace/segment_counts.h"
 #include "trace/touch.h"
 #include "trace/tracer.h"
 #include "trace/tree_block.h"
@@ -18,15 +19,20 @@ struct GrowCounters {
   std::uint64_t ray_updates = 0;     // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;  // shadow segments traced against the whole scene
   std::uint64_t ray_tests = 0;       // stored segments tested against the selection
-  std::uint64_t object_rays = 0;     // rays and shadow segments against one known object
+  CulledSegments culled;             // stored segments looked at, or dropped, that were not
+  std::uint64_t object_rays = 0;     // rays and shadow segments against one known object, to find hits again or where
+                                     // transparent surfaces stand on a shadow segment
   std::uint64_t trees_rebuilt = 0;   // whose hits these rays have found again
+  std::uint64_t hits_rebuilt = 0;    // of these trees
 
   GrowCounters& operator+=(const GrowCounters& other) {
     ray_updates += other.ray_updates;
     shadow_updates += other.shadow_updates;
     ray_tests += other.ray_tests;
+    culled += other.culled;
     object_rays += other.object_rays;
     trees_rebuilt += other.trees_rebuilt;
+    hits_rebuilt += other.hits_rebuilt;
     return *this;
   }
 };
@@ -69,7 +75,7 @@ struct RayChange {
   std::vector<std::uint32_t> before_index;         // by ObjectId, into `before`
   Tracer::TopLevel moved_after;                    // moved objects where they are now
   Tracer::TopLevel shadows_before, shadows_after;  // objects with flag `shadows`
-  SelectionBounds bounds;                          // of these three
+  SelectionBounds bounds;                          // of these three, where they are not empty
   std::vector<LightId> old_lights;                 // light order of the stored trees
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
   bool lights_changed = false;                     // any light added, deleted, moved or reordered
@@ -84,11 +90,17 @@ struct RayChange {
   }
 };
 
+/// What of an updated tree differs from what is stored.
+enum class TreeChange : std::uint8_t {
+  none,
+  counters,  // only what stands before lights that were blocked and still are: the path, no colour
+  all,       // a node, hit, filter or shadow state, or a light that reaches a node has moved
+};
+
 /// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `touches`: the
-/// segments that the selection may meet or may have met; null: any. `changed` is set to true if any node, hit or shadow
-/// state differs from what is stored, or a light that reaches a node has moved. Requires: `stored` has its hits.
+/// segments that the selection may meet or may have met; null: any. Requires: `stored` has its hits.
 std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const Touches* touches,
                           const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
-                          GrowCounters& counters, bool& changed);
+                          GrowCounters& counters, TreeChange& what);
 
 }  // namespace relook

@@ -59,6 +59,13 @@ class Grower {
   void set_link(std::uint32_t index, std::size_t light, ShadowState state) {
     b_.lights[b_.nodes[index].first_light + light].state = state;
   }
+  /// The same with the surfaces that a segment crosses.
+  void set_crossings(std::uint32_t index, std::size_t light, const ShadowSegment& segment,
+                     std::span<const Crossing> crossings) {
+    filters_.clear();
+    for (const Crossing& crossing : crossings) filters_.push_back(filter_of(crossing));
+    set_filters(index, light, segment, filters_);
+  }
   void set_filters(std::uint32_t index, std::size_t light, const ShadowSegment& segment,
                    std::span<const FilterNode> filters) {
     LightLink& link = b_.lights[b_.nodes[index].first_light + light];
@@ -96,9 +103,7 @@ class Grower {
       set_link(index, light, ShadowState::blocked);
       return;
     }
-    filters_.clear();
-    for (const Crossing& crossing : crossings_) filters_.push_back(filter_of(crossing));
-    set_filters(index, light, segment, filters_);
+    set_crossings(index, light, segment, crossings_);
   }
 
   /// Traces the shadow segments of all nodes from `first` on: apart from the rays, since like work in a row runs
@@ -208,17 +213,22 @@ class FilterReader {
   return node;
 }
 
-inline void skip_children(StoredTree& stored, const PathNode& node) {
+/// Leaves out what is below a node: the number of its segments.
+inline std::uint64_t skip_children(StoredTree& stored, const PathNode& node) {
+  std::uint64_t segments = 0;
   for (unsigned owed = node.children(); owed > 0; --owed) {
     std::span<const Hit> hits;
-    owed += take(stored, hits).children();
+    const PathNode below = take(stored, hits);
+    segments += below.segments();
+    owed += below.children();
   }
+  return segments;
 }
 
-inline void skip_tree(StoredTree& stored) {
+inline std::uint64_t skip_tree(StoredTree& stored) {
   std::span<const Hit> hits;
   const PathNode node = take(stored, hits);
-  skip_children(stored, node);
+  return node.segments() + skip_children(stored, node);
 }
 
 }  // namespace relook

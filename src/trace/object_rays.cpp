@@ -1,7 +1,6 @@
 #include "trace/object_rays.h"
 
 #include <algorithm>
-#include <tuple>
 
 #include "base/error.h"
 
@@ -15,6 +14,7 @@ Hit ObjectRays::hit(ObjectId object, const SpawnedRay& ray) {
   ++counters_.object_rays;
   const Meeting meeting = Tracer::intersect(objects_->of(object), {ray.origin, ray.direction});
   if (meeting.object.is_none()) refuse_trees();
+  ++found_;
   return meeting.hit;
 }
 
@@ -27,8 +27,9 @@ const std::vector<Crossing>& ObjectRays::filters(std::span<const std::uint32_t> 
     if (!Tracer::passes(objects_->of(ObjectId(objects[i])), ray, of_object_)) refuse_trees();
     crossings_.insert(crossings_.end(), of_object_.begin(), of_object_.end());
   }
-  std::ranges::sort(crossings_, {}, [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); });
+  std::ranges::sort(crossings_, {}, place_on_segment);
   if (!std::ranges::equal(crossings_, objects, {}, [](const Crossing& c) { return c.object.index(); })) refuse_trees();
+  found_ += crossings_.size();
   return crossings_;
 }
 

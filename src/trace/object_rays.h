@@ -22,10 +22,13 @@ class ObjectRays {
   /// paths. Valid until the next call.
   [[nodiscard]] const std::vector<Crossing>& filters(std::span<const std::uint32_t> objects,
                                                      const ShadowSegment& segment);
+  /// Hits found so far.
+  [[nodiscard]] std::uint64_t found() const { return found_; }
 
  private:
   const ObjectLevels* objects_;
   GrowCounters& counters_;
+  std::uint64_t found_ = 0;
   std::vector<Crossing> crossings_, of_object_;
 };
 

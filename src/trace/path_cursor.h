@@ -59,11 +59,14 @@ struct PathNode {
   std::span<const std::uint32_t> lights;   // packed states
   std::span<const std::uint32_t> entries;  // of the lights, for an EntryReader
   std::uint32_t filter_hits = 0;           // transparent surfaces of all filtered lights
+  std::uint32_t shadow_segments = 0;       // to lights that the surface faces
 
   [[nodiscard]] bool is_miss() const { return object_word == PathTable::kMissWord; }
   [[nodiscard]] ObjectId object() const { return ObjectId(object_word); }
   [[nodiscard]] bool has_child(Branch branch) const { return (flags >> static_cast<unsigned>(branch) & 1U) != 0; }
   [[nodiscard]] unsigned children() const { return static_cast<unsigned>(std::popcount(flags & 0xFU)); }
+  /// The ray that leads here, and those to lights.
+  [[nodiscard]] std::uint32_t segments() const { return 1 + shadow_segments; }
   [[nodiscard]] bool inside() const { return (flags & kInsideFlag) != 0; }
 };
 
@@ -86,6 +89,7 @@ class PathCursor {
     const std::size_t start = position_;
     for (std::size_t light = 0; light < layout_.lights; ++light) {
       const ShadowState state = shadow_state(node.lights, light);
+      if (state != ShadowState::facing_away) ++node.shadow_segments;
       if (!has_entry(state, layout_.shadow_bits)) continue;
       const std::uint32_t count = words_[position_];
       if (state == ShadowState::filtered) node.filter_hits += count;

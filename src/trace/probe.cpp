@@ -1,6 +1,7 @@
 #include "trace/probe.h"
 
 #include "trace/grower.h"
+#include "trace/segment_tests.h"
 
 namespace relook {
 namespace {
@@ -9,14 +10,19 @@ class Prober {
  public:
   Prober(const GrowScene& grow, const RayChange& change, const Touches& touches, StoredTree stored,
          GrowCounters& counters)
-      : g_(grow), change_(change), touches_(touches), stored_(stored), counters_(counters) {}
+      : g_(grow),
+        change_(change),
+        touches_(touches),
+        stored_(stored),
+        counters_(counters),
+        tests_(change, grow.shadow_bits, counters) {}
 
   bool probe(const SpawnedRay& ray, History history) {
     std::span<const Hit> hits;
     const PathNode stored = take(stored_, hits);
     const Touch* touch = touch_of(touches_, history);
     if (touch == nullptr) {
-      skip_children(stored_, stored);
+      counters_.culled.tunnels += stored.segments() + skip_children(stored_, stored);
       return false;
     }
     RayNode node(kNoNode, 0, ray);
@@ -25,45 +31,40 @@ class Prober {
       node.hit = hits.front();
       complete(node, g_.scene.object(node.object));
     }
-    if (touch->ray && meets(node)) return true;
+    if (meets(node, touch->ray)) return true;
     if (stored.is_miss()) return false;
-    if ((touch->open | touch->blocked) != 0 && lights_change(node, stored, *touch)) return true;
+    if ((touch->open | touch->blocked) == 0)
+      counters_.culled.tunnels += stored.shadow_segments;
+    else if (lights_change(node, stored, *touch))
+      return true;
     if (!touch->below) {
-      skip_children(stored_, stored);
+      counters_.culled.tunnels += skip_children(stored_, stored);
       return false;
     }
     return probe_children(node, stored, history);
   }
 
  private:
-  [[nodiscard]] bool meets(const RayNode& node) {
+  [[nodiscard]] bool meets(const RayNode& node, bool touched) {
     Ray segment{node.ray.origin, node.ray.direction};
-    if (!node.object.is_none()) segment.t_max = node.length + distance_slack(node, g_.scene.object(node.object));
-    if (!is_near(change_.bounds.moved, segment)) return false;
-    ++counters_.ray_tests;
-    return !Tracer::intersect(change_.moved_after, segment).object.is_none();
+    if (touched && !node.object.is_none())
+      segment.t_max = node.length + distance_slack(node, g_.scene.object(node.object));
+    return tests_.tests_ray(touched, segment) && !Tracer::intersect(change_.moved_after, segment).object.is_none();
   }
 
   [[nodiscard]] bool lights_change(const RayNode& node, const PathNode& stored, const Touch& touch) {
     const auto& lights = g_.scene.scene().light_order;
     for (std::size_t light = 0; light < lights.size(); ++light) {
       const ShadowState state = shadow_state(stored.lights, light);
-      const bool is_blocked = state == ShadowState::blocked;
-      const std::uint32_t may_change = is_blocked ? touch.blocked : touch.open;
-      if (state == ShadowState::facing_away || (may_change & light_bit(light)) == 0) continue;
+      if (state == ShadowState::facing_away) continue;
+      const bool touched = touch.touches(state == ShadowState::blocked, light);
       const ShadowSegment segment = shadow_segment(node.point, g_.scene.scene().light(lights[light]));
       const Ray ray{segment.origin, segment.direction, segment.t_max};
-      const bool before = is_blocked && is_near(change_.bounds.shadows_before, ray);
-      const bool after = (!is_blocked || g_.shadow_bits > 0) && is_near(change_.bounds.shadows_after, ray);
-      if (!before && !after) continue;
-      ++counters_.ray_tests;
-      if (before && crosses(change_.shadows_before, ray)) return true;
-      if (after && crosses(change_.shadows_after, ray)) return true;
+      const auto tests = tests_.tests_shadow(state, touched, ray);
+      if (tests.before && crosses(change_.shadows_before, ray)) return true;
+      if (tests.after && crosses(change_.shadows_after, ray)) return true;
     }
     return false;
-  }
-  [[nodiscard]] bool is_near(const Box& box, const Ray& ray) const {
-    return may_meet(box, change_.bounds.condition, ray.origin, ray.direction, ray.t_max);
   }
   [[nodiscard]] bool crosses(const Tracer::TopLevel& selection, const Ray& ray) {
     return !Tracer::passes(selection, ray, crossings_) || !crossings_.empty();
@@ -83,6 +84,7 @@ class Prober {
   const Touches& touches_;
   StoredTree stored_;
   GrowCounters& counters_;
+  SegmentTests tests_;
   std::vector<Crossing> crossings_;
 };
 

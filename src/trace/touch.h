@@ -30,6 +30,9 @@ struct Touch {
   History history = kEye;
   bool ray = false, below = false;
   std::uint32_t open = 0, blocked = 0;  // lights: of the segments that reach them, of those that do not
+  [[nodiscard]] bool touches(bool is_blocked, std::size_t light) const {
+    return ((is_blocked ? blocked : open) & light_bit(light)) != 0;
+  }
 };
 /// Increasing by history; a touch of a section comes with those of its ancestors.
 using Touches = std::vector<Touch>;

@@ -179,11 +179,9 @@ bool is_blocked(RTCScene scene, const std::vector<Tracer::Placed>& placed, bool 
 /// Embree may report a surface more than once, and in any order.
 void put_in_order(std::vector<Crossing>& crossings) {
   if (crossings.size() < 2) return;
-  const auto place = [](const Crossing& c) { return std::tuple(c.t, c.key, c.hit.primitive); };
-  std::sort(crossings.begin(), crossings.end(),
-            [&](const Crossing& a, const Crossing& b) { return place(a) < place(b); });
-  const auto same = [&](const Crossing& a, const Crossing& b) { return place(a) == place(b); };
-  crossings.erase(std::unique(crossings.begin(), crossings.end(), same), crossings.end());
+  std::ranges::sort(crossings, {}, place_on_segment);
+  const auto repeated = std::ranges::unique(crossings, {}, place_on_segment);
+  crossings.erase(repeated.begin(), repeated.end());
 }
 
 }  // namespace

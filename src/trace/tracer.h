@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "trace/ray_scene.h"
@@ -41,6 +42,11 @@ struct Crossing {
   std::uint64_t key = 0;
   bool operator==(const Crossing&) const = default;
 };
+
+/// What crossings of one segment are ordered by.
+[[nodiscard]] inline std::tuple<float, std::uint64_t, std::uint32_t> place_on_segment(const Crossing& crossing) {
+  return {crossing.t, crossing.key, crossing.hit.primitive};
+}
 
 /// Told how many bytes acceleration structures are about to take; negative: have given back. Called from any thread.
 /// What it throws about bytes to be taken ends the building, which throws it in turn.

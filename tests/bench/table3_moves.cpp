@@ -71,14 +71,14 @@ MoveTimes time_move(Replayer& replayer, const JournalStep& step, const Edit& inv
 
 /// One line of the table, or the mean of several.
 struct Row {
-  double seconds = 0, share = 0, work = 0, culled = 0;
+  double seconds = 0, share = 0, work = 0, culled = 0;  // culled: by tunnels alone
   void add(const TimedStep& step, double step_work, double pixels) {
     const Counters& counters = step.result.counters;
     const double tests = static_cast<double>(counters.ray_tests + counters.ray_tests_culled);
     seconds += step.seconds;
     share += static_cast<double>(counters.pixels_changed) / pixels;
     work += step_work;
-    if (tests > 0) culled += static_cast<double>(counters.ray_tests_culled) / tests;
+    if (tests > 0) culled += static_cast<double>(counters.culled.tunnels) / tests;
   }
   void divide(double count) {
     seconds /= count;
@@ -101,7 +101,7 @@ void note_row(const BenchOptions& options, const std::string& name, const Row& r
     if (row.work > 0) options.note(table, name, "time / work", row.seconds / row.work);
   }
   if (has_tunnels && row.culled > 0)
-    options.note(table, name, "ray tests culled", 100 * row.culled, "%", "65 to 90 %", Goal{95});
+    options.note(table, name, "ray tests culled by tunnels", 100 * row.culled, "%", "65 to 90 %", Goal{95});
 }
 
 /// `paper_seconds`: of this part; 0: not known.
