@@ -1,8 +1,18 @@
+#include "cache/cache_names.h"
 #include "engine/cached_image.h"
+#include "engine/cached_tunnels.h"
 #include "load_cache.h"
 #include "verbs.h"
 
 namespace relook {
+
+namespace {
+
+std::size_t wrong_tunnels(const OpenedCache& opened) {
+  return opened.tunnels ? count_wrong_tunnels(*opened.state, opened.image, *opened.tunnels) : 0;
+}
+
+}  // namespace
 
 ExitCode run_check(const Arguments& arguments, Console& console) {
   const std::string& cache = arguments.inputs[0];
@@ -13,6 +23,10 @@ ExitCode run_check(const Arguments& arguments, Console& console) {
     if (answer.fault != CacheFault::none) {
       report.worst = answer;
       report.findings.push_back(answer.file + ": " + answer.detail);
+    } else if (const std::size_t wrong = wrong_tunnels(opened); wrong > 0) {
+      const std::string detail = std::string("tunnels of ") + std::to_string(wrong) + " tile(s) are not around the ray trees";
+      report.worst = {CacheFault::damaged, std::string(kTunnelsFolder), detail};
+      report.findings.push_back(std::string(kTunnelsFolder) + ": " + detail);
     }
   }
   for (const std::string& finding : report.findings) console.line(finding);

@@ -10,7 +10,9 @@
 #include "base/hash.h"
 #include "cache/manifest.h"
 #include "cache/tunnel_parts.h"
+#include "engine/cached_tunnels.h"
 #include "engine/path_classes.h"
+#include "region/cell_tunnels.h"
 #include "region_checks.h"
 #include "run_program.h"
 #include "tunnel_caches.h"
@@ -186,6 +188,27 @@ TEST_F(StoredTunnelsTest, OfOtherRayTreesAreRefused) {
   std::ofstream(file, std::ios::binary | std::ios::trunc)
       .write(reinterpret_cast<const char*>(foreign.data()), static_cast<std::streamsize>(foreign.size()));
   expect_exact({}, 1, "foreign");
+}
+
+TEST_F(StoredTunnelsTest, ThatAreWrongAndHaveTheirHashesAreFoundByCheck) {
+  const SceneState state = test_scene(TestScene::study, 90, 70);
+  CacheContent content = content_with_tunnels(state, {1, 5}, {});
+  write_cache(cache_, content);
+  const OpenedCache sound = opened_cache(cache_);
+  EXPECT_EQ(count_wrong_tunnels(*sound.state, sound.image, *sound.tunnels), 0U);
+  const TileGrid grid = content.tunnels[1].grid();
+  TileTunnels::Cells cells = content.tunnels[1].cells();
+  for (TunnelSection& section : cells.sections)
+    if (!section.points.isEmpty()) section.points = Box(section.points.min, section.points.min);
+  content.tunnels[1] = TileTunnels::united(grid, cells, 1);
+  content.around_tiles[1] = around(content.tunnels[1]);
+  write_cache(cache_, content);
+  EXPECT_TRUE(check_cache(cache_).findings.empty()) << "every hash and invariant holds";
+  const OpenedCache wrong = opened_cache(cache_);
+  EXPECT_EQ(count_wrong_tunnels(*wrong.state, wrong.image, *wrong.tunnels), 1U);
+  const ProgramResult checked = run_program({RELOOK_PROGRAM, "check", cache_.string()});
+  EXPECT_EQ(checked.exit_code, 5) << checked.output;
+  EXPECT_NE(checked.output.find("tunnels of 1 tile"), std::string::npos) << checked.output;
 }
 
 TEST_F(StoredTunnelsTest, OfAnotherShapeAreNotUsed) {

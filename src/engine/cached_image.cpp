@@ -9,11 +9,9 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "base/parallel.h"
+#include "engine/cached_tunnels.h"
 #include "engine/image_pieces.h"
-#include "engine/path_classes.h"
-#include "engine/regions.h"
 #include "engine/render.h"
-#include "trace/object_levels.h"
 #include "trace/path_cursor.h"
 
 namespace relook {
@@ -152,32 +150,6 @@ Moves all_of(const std::vector<std::size_t>& tiles, const Image& image) {
 
 }  // namespace
 
-namespace {
-
-/// Builds the lost tunnels of an image whose trees are whole.
-void build_again(const SceneState& state, const Image& image, const CacheLosses& losses, CacheContent& content) {
-  if (losses.tunnels.empty()) return;
-  const StorageOptions& storage = content.storage;
-  const std::vector<ObjectId> atoms = storage.atoms > 0 ? atoms_of(state, storage.atoms) : std::vector<ObjectId>();
-  const RayScene rays(state.scene());
-  ObjectLevels objects(rays, {});
-  const GrowScene grow{rays, nullptr, image.view.max_depth, image.view.shadow_bits, &objects};
-  PathClasses classes(storage.atoms > 0);
-  classes.extend(image.paths, grow.layout(), atoms);
-  const auto class_of = [&](PathId path) { return classes.of(path); };
-  ImageRegions regions({.tunnels = storage.tunnels.of_region,
-                        .atoms = storage.atoms,
-                        .tunnel_levels = storage.tunnels.dropped_levels,
-                        .most_tunnels = storage.tunnels.of_image});
-  regions.build_tunnels(image, grow, class_of);
-  for (const std::size_t tile : losses.tunnels) {
-    content.around_tiles[tile] = regions.around(tile);
-    content.tunnels[tile] = regions.tunnels(tile);
-  }
-}
-
-}  // namespace
-
 CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   if (losses.empty()) return {};
   CacheContent scene_part;
@@ -191,7 +163,7 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   if (answer.fault != CacheFault::none) return answer;
   Image image = take_image(content);
   answer = trace_again(state->scene(), losses, image);
-  if (answer.fault == CacheFault::none) build_again(*state, image, losses, content);
+  if (answer.fault == CacheFault::none) build_tunnels_again(*state, image, losses.tunnels, content);
   put_back(std::move(image), content);
   return answer;
 }
