@@ -68,9 +68,11 @@ struct Arguments {
   std::string spill;                     // replay: folder of the spill file; "": the run's
   std::string access_log;                // replay: file, or ""
   bool print_look = false;               // inspect
+  std::vector<std::string> view_options;  // inspect: those of VIEW that were given, as "--camera"
   std::string scene;                     // inspect, replay, check
 
   Thresholds thresholds;                               // compare
+  DisplayWhite white;                                  // compare: --peak
   bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP
   std::string json_file;                               // compare, plan: --json=FILE, or ""
   std::string html;                                    // compare: file, or ""
