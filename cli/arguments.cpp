@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "help_footer.h"
+#include "needless_options.h"
 #include "values.h"
 #include "version_text.h"
 
@@ -33,6 +34,7 @@ struct RawTexts {
   std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
   std::string json;  // compare, plan; "-": to stdout
   std::optional<std::string> steps;
+  std::vector<const CLI::Option*> inspection_view;  // VIEW of inspect
 };
 
 void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
@@ -59,34 +61,36 @@ CLI::Option* add_lights(CLI::App& verb, RawTexts& raw, const char* help = "auto:
   return verb.add_option("--lights", raw.lights, help)->check(CLI::IsMember({"auto"}));
 }
 
-void add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
+/// The options that it adds.
+std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   ViewArguments& view = arguments.view;
+  const auto before = static_cast<std::ptrdiff_t>(verb.get_options().size());
   verb.add_option("--camera", view.camera, "NAME, auto, or EYE:TARGET:FOV as x,y,z:x,y,z:degrees");
   add_lights(verb, raw);
   verb.add_option("--resolution", raw.resolution, "WxH in pixels; 960x540");
   verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 256));
   verb.add_option("--max-depth", view.sampling.max_depth, "Generations of rays; 6")->check(CLI::Range(1, 16));
+  const std::vector<CLI::Option*> options = verb.get_options();
+  return {options.begin() + before, options.end()};
 }
 
 void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
-  StructureOptions& structures = arguments.structures;
+  NamedStructures& named = arguments.named;
   verb.add_option("--memory", raw.memory, "Most memory of the whole process, like 2G; without: no limit");
   verb.add_option("--ray-trees", raw.ray_trees,
                   "Percentage of the samples whose ray trees are kept, not just their paths");
   verb.add_option("--color-trees", raw.color_trees,
-                  "Percentage of the samples whose colour trees are kept between steps");
-  const bool is_replay = verb.get_name() == "replay";
-  TunnelArguments& tunnels = arguments.tunnels;
-  verb.add_option("--tunnels", tunnels.tunnels,
-                  is_replay ? "Most tunnels of a region, the last for all further paths; 0: none; the cache's, or 1"
-                            : "Most tunnels of a region to store, the last for all further paths; 0: none; 1")
+                  "Percentage of the samples whose colour trees a replay keeps between steps; 100");
+  verb.add_option("--tunnels", named.tunnels,
+                  "Most tunnels of a region, the last for all further paths; 0: none; 1")
       ->check(CLI::Range(0, 16));
-  verb.add_option("--tunnel-levels", tunnels.levels,
+  verb.add_option("--tunnel-levels", named.tunnel_levels,
                   "The lowest levels of the image's quadtree without tunnels; 2: squares of four pixels have some")
       ->check(CLI::Range(std::uint32_t{0}, kTileLevel));
-  verb.add_option("--most-tunnels", tunnels.most, "Most tunnels in all: the lowest levels go first; without: no limit");
-  verb.add_option("--groups", structures.groups, "Replay: most paths of a group; 0: none")->check(CLI::Range(0, 64));
-  verb.add_option("--atoms", tunnels.atoms,
+  verb.add_option("--most-tunnels", named.most_tunnels,
+                  "Most tunnels in all: the lowest levels go first; without: no limit");
+  verb.add_option("--groups", named.groups, "Most paths of a group in a replay; 0: none; 4")->check(CLI::Range(0, 64));
+  verb.add_option("--atoms", named.atoms,
                   "Depth of the node hierarchy at which nodes count as one object for groups and tunnels; 0: none")
       ->check(CLI::Range(0, 64));
   verb.add_option("--shadow-bits", arguments.shadow_bits, "Bits of a shadow counter, fixed by preprocess; 0: a flag")
@@ -112,6 +116,7 @@ void add_compare(CLI::App& app, Arguments& arguments) {
   add_output(compare, arguments, "Folder for compare.json and compare.html");
   compare.add_option("--html", arguments.html, "Page to write: tables, and pictures of the frames that differ");
   compare.add_flag("--exact", arguments.exact_only, "Only what is exact and quick: no PSNR, SSIM and FLIP");
+  compare.add_option("--peak", arguments.white.value, "PSNR's peak, the linear value that is white on the display; 1");
   Thresholds& limits = arguments.thresholds;
   const auto add = [&](const char* name, auto& value, const char* help) { compare.add_option(name, value, help); };
   add("--fail", limits.fail, "A pixel fails when a channel differs by more; without: by a bit");
@@ -215,7 +220,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
                   "Print the look document of a scene or cache; with a JSON Patch: patched by it")
       ->expected(0, 1);
   inspect.add_option("--scene", arguments.scene, "Scene or cache that a journal edits: print the class of each step");
-  add_view(inspect, arguments, raw);
+  raw.inspection_view = add_view(inspect, arguments, raw);
 
   CLI::App& check = *app.add_subcommand("check", "Check every byte and invariant of a cache");
   add_inputs(check, arguments, "CACHE", "Cache folder", 1, 1);
@@ -231,13 +236,12 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);
   blame.add_option("--cache", arguments.cache, "Where the run's cache is now");
   blame.add_option("--journal", arguments.journal, "Where the run's journal is now");
-  for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
-
   CLI::App& completions = *app.add_subcommand("completions", "Print completions for a shell");
   completions.add_option("SHELL", arguments.inputs, "bash, zsh or fish")
       ->required()
       ->expected(1)
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 }
 
 constexpr std::array<std::string_view, 11> kVerbs{"render", "preprocess", "replay", "compare", "inspect",    "check",
@@ -263,13 +267,13 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.ray_trees.empty())
     arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);
   if (!raw.color_trees.empty())
-    arguments.structures.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
+    arguments.named.color_trees_percent = parse_percent("--color-trees", raw.color_trees, true);
   if (raw.steps) arguments.steps = parse_steps("--steps", *raw.steps);
   arguments.report = raw.report == "none"   ? ReportKind::none
                      : raw.report == "json" ? ReportKind::json
                                             : ReportKind::html;
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
-  take_tunnels({}, arguments);
+  take_structures({}, arguments);
   arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
@@ -325,38 +329,31 @@ void resolve_compare(const RawTexts& raw, Arguments& arguments) {
   require_range("--warnpercent", limits.warn_percent, kHundred);
   require_range("--hardwarn", limits.hard_warn, kAny);
   require_range("--warnflip", limits.warn_flip, kAny);
-  if (arguments.exact_only && (limits.fail_flip || limits.warn_flip))
-    throw UsageError("--failflip, --warnflip: not with --exact, which works out no FLIP");
+  if (!(arguments.white.value > 0 && arguments.white.value <= kAny))
+    throw UsageError("--peak: a finite number above 0");
 }
 
 /// `inspect --look SCENE`: the word after --look is the input when there is no other.
-void resolve_inspect(const CLI::App& verb, Arguments& arguments) {
+void resolve_inspect(const CLI::App& verb, const RawTexts& raw, Arguments& arguments) {
   std::string& patch = arguments.view.look_patch;
   if (arguments.inputs.empty() && !patch.empty()) arguments.inputs.push_back(std::exchange(patch, ""));
   if (arguments.inputs.empty()) throw UsageError("INPUT is required");
   arguments.print_look = verb.count("--look") > 0 && arguments.scene.empty();
-}
-
-/// The command line with values marked by a space that CLI11 would take for an option (-1..1:5) or a list ([1,0,0]).
-std::vector<std::string> marked_values(int argc, const char* const* argv) {
-  std::vector<std::string> words;
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
-    const bool is_number = word.size() > 1 && word[0] == '-' && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
-    words.push_back(is_number || word.starts_with('[') ? " " + word : word);
-  }
-  return words;
+  for (const CLI::Option* option : raw.inspection_view)
+    if (option->count() > 0) arguments.view_options.push_back("--" + option->get_lnames().front());
 }
 
 }  // namespace
 
-void take_tunnels(const StructureOptions& others, Arguments& arguments) {
+void take_structures(const StructureOptions& others, Arguments& arguments) {
   StructureOptions& structures = arguments.structures;
-  const TunnelArguments& named = arguments.tunnels;
+  const NamedStructures& named = arguments.named;
   structures.tunnels = named.tunnels.value_or(others.tunnels);
-  structures.tunnel_levels = named.levels.value_or(others.tunnel_levels);
+  structures.tunnel_levels = named.tunnel_levels.value_or(others.tunnel_levels);
+  structures.most_tunnels = named.most_tunnels ? named.most_tunnels : others.most_tunnels;
+  structures.groups = named.groups.value_or(others.groups);
   structures.atoms = named.atoms.value_or(others.atoms);
-  structures.most_tunnels = named.most ? named.most : others.most_tunnels;
+  structures.color_trees_percent = named.color_trees_percent.value_or(others.color_trees_percent);
 }
 
 std::vector<VerbHelp> command_line_help() {
@@ -404,12 +401,14 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   } catch (const CLI::CallForVersion& version) {
     return {std::nullopt, std::string(version.what()) + "\n"};
   } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
+    throw UsageError(refused_line_text(app, {argv, static_cast<std::size_t>(argc)}, error.what()));
   }
   resolve(raw, arguments);
+  const CLI::App& verb = *app.get_subcommands().front();
+  require_effects(verb, arguments);
   if (arguments.verb == Verb::compare) resolve_compare(raw, arguments);
   if (arguments.verb == Verb::plan) resolve_plan(raw, arguments);
-  if (arguments.verb == Verb::inspect) resolve_inspect(*app.get_subcommands().front(), arguments);
+  if (arguments.verb == Verb::inspect) resolve_inspect(verb, raw, arguments);
   return {std::move(arguments), ""};
 }
 

@@ -39,10 +39,11 @@ struct ViewArguments {
   ViewOptions sampling;
 };
 
-/// What the command line says of tunnels; what it does not say is the cache's.
-struct TunnelArguments {
-  std::optional<std::uint32_t> tunnels, levels, atoms;
-  std::optional<std::uint64_t> most;
+/// What the command line says of structures; what it does not say is the cache's.
+struct NamedStructures {
+  std::optional<std::uint32_t> tunnels, tunnel_levels, groups, atoms;
+  std::optional<std::uint64_t> most_tunnels;
+  std::optional<double> color_trees_percent;
 };
 
 struct Arguments {
@@ -51,7 +52,7 @@ struct Arguments {
   std::string output;
   ViewArguments view;
   StructureOptions structures;
-  TunnelArguments tunnels;  // what is named of `structures`
+  NamedStructures named;  // of `structures`
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
   std::size_t threads = 0;                   // 0: all
   bool quiet = false, json = false;
@@ -75,9 +76,11 @@ struct Arguments {
   std::string spill;                     // replay: folder of the spill file; "": the run's
   std::string access_log;                // replay: file, or ""
   bool print_look = false;               // inspect
+  std::vector<std::string> view_options;  // inspect: those of VIEW that were given, as "--camera"
   std::string scene;                     // inspect, replay, check
 
   Thresholds thresholds;                               // compare
+  DisplayWhite white;                                  // compare: --peak
   bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP
   std::string json_file;                               // compare, plan: --json=FILE, or ""
   std::string html;                                    // compare: file, or ""
@@ -93,8 +96,8 @@ struct ParsedCommandLine {
 };
 [[nodiscard]] ParsedCommandLine parse_command_line(int argc, const char* const* argv);
 
-/// What the command line does not say of tunnels and atoms becomes that of `others`.
-void take_tunnels(const StructureOptions& others, Arguments& arguments);
+/// What the command line does not say of structures becomes that of `others`.
+void take_structures(const StructureOptions& others, Arguments& arguments);
 
 /// The command line as completions need it.
 struct OptionHelp {

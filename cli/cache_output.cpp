@@ -50,7 +50,9 @@ StorageOptions storage_options(const StructureOptions& structures) {
   return {structures.ray_trees_percent,
           structures.disk_bytes,
           {structures.tunnels, structures.tunnel_levels, structures.most_tunnels},
-          structures.atoms};
+          structures.atoms,
+          structures.groups,
+          structures.color_trees_percent};
 }
 
 std::optional<Json> finished_cache(const Arguments& arguments, Console& console) {

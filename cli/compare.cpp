@@ -142,7 +142,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   if (!arguments.output.empty()) make_folders(arguments.output);  // found out before the work
   Json pairs = Json::array();
   Verdict verdict = Verdict::equal;
-  ComparePage page(inputs[0]);
+  ComparePage page(inputs[0], arguments.white);
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     const auto share = [&](std::size_t done) {
       return static_cast<double>(done) / static_cast<double>(inputs.size() - 1);
@@ -159,6 +159,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   console.part_done();
   Json result = pairs.size() == 1 ? pairs[0] : Json{{"pairs", pairs}, {"verdict", verdict_name(verdict)}};
   result["relook"] = "compare/1";
+  result["psnr_peak"] = arguments.exact_only ? Json(nullptr) : Json(arguments.white.value);
   if (are_folders) {
     if (const std::optional<RunTable> table = read_table(inputs, console)) {
       print_table(*table, console);

@@ -33,7 +33,8 @@ Pictures pictures_of(const Frame& a, const Frame& b, const FrameComparison& comp
 FileComparison compared_files(const std::filesystem::path& a, const std::filesystem::path& b,
                               const Arguments& arguments) {
   const ExrFile first(read_file(a), a.string()), second(read_file(b), b.string());
-  return compare_exr_files(first, second, arguments.thresholds, !arguments.exact_only);
+  return compare_exr_files(first, second, arguments.thresholds,
+                           arguments.exact_only ? std::nullopt : std::optional(arguments.white));
 }
 
 void add_frame(PairComparison& pair, std::string name, FrameComparison comparison) {

@@ -109,7 +109,8 @@ std::string measure_table(const RunTable& table, std::size_t measure) {
 
 void ComparePage::add_pair(const std::string& b, const PairComparison& pair) {
   pairs_ += "<h2>" + html(a_) + " and " + html(b) + ": " + html(verdict_name(pair.verdict)) + "</h2>\n<table>\n<tr>";
-  for (const char* name : {"frame", "verdict", "pixels different", "max error", "RMS error", "PSNR (dB)", "SSIM",
+  const std::string psnr_name = "PSNR (dB, peak " + number(white_.value) + ")";
+  for (const char* name : {"frame", "verdict", "pixels different", "max error", "RMS error", psnr_name.c_str(), "SSIM",
                            "FLIP, mean", "FLIP, largest", "worst pixel: channels of both"})
     pairs_ += head(name);
   pairs_ += "</tr>\n";

@@ -10,14 +10,15 @@ namespace relook {
 
 class ComparePage {
  public:
-  /// `a`: what all else is compared with.
-  explicit ComparePage(std::string a) : a_(std::move(a)) {}
+  /// `a`: what all else is compared with. `white`: PSNR's peak.
+  ComparePage(std::string a, DisplayWhite white) : a_(std::move(a)), white_(white) {}
   void add_pair(const std::string& b, const PairComparison& pair);
   void set_runs(const RunTable& table);
   [[nodiscard]] std::string text() const;
 
  private:
   std::string a_, pairs_, runs_;  // HTML
+  DisplayWhite white_;
 };
 
 }  // namespace relook

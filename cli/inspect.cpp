@@ -129,8 +129,6 @@ void print_look(const Arguments& arguments, Kind kind, Console& console) {
     throw UsageError("--look: " + input + " is neither a scene nor a cache");
   if (kind == Kind::cache && !arguments.view.look_patch.empty())
     throw UsageError("--look: the look document of a cache is fixed; patch the scene");
-  if (kind == Kind::cache && arguments.view.auto_lights)
-    throw UsageError("--lights: the look document of a cache is fixed; preprocess the scene with --lights auto");
   Json look;
   if (kind == Kind::scene) {
     LoadedDocument loaded = load_lit_document(arguments);
@@ -142,12 +140,29 @@ void print_look(const Arguments& arguments, Kind kind, Console& console) {
   console.print(json_text(look, 2) + "\n");
 }
 
+/// A view, and a patch, are of a scene.
+void require_view_of_scene(const Arguments& arguments, Kind kind) {
+  const bool has_scene = !arguments.scene.empty();
+  const std::string& seen = has_scene ? arguments.scene : arguments.inputs[0];
+  std::error_code error;
+  const bool is_fixed = has_scene ? std::filesystem::is_directory(seen, error) : kind != Kind::scene;
+  if (!is_fixed) return;
+  std::vector<std::string> options = arguments.view_options;
+  if (has_scene && !arguments.view.look_patch.empty()) options.emplace_back("--look");
+  if (options.empty()) return;
+  const char* const reason = has_scene || kind == Kind::cache ? " is a cache, whose look and view are fixed"
+                             : kind == Kind::run              ? " is a run, whose look and view are fixed"
+                                                              : " is a journal, whose scene is given with --scene";
+  throw UsageError("inspect " + options.front() + ": " + seen + reason);
+}
+
 }  // namespace
 
 ExitCode run_inspect(const Arguments& arguments, Console& console) {
   const Kind kind = kind_of(arguments.inputs[0]);
   if (!arguments.scene.empty() && kind != Kind::journal)
     throw UsageError("--scene: " + arguments.inputs[0] + " is no journal");
+  require_view_of_scene(arguments, kind);
   if (arguments.print_look) {
     print_look(arguments, kind, console);
     return ExitCode::ok;

@@ -54,6 +54,12 @@ ExitCode say_complete(const std::string& cache, const Json& manifest, Console& c
   return ExitCode::ok;
 }
 
+/// What a preprocess holds it keeps until it has been written, so a limit can only end it.
+void keep_within(const std::optional<std::uint64_t>& memory_bytes) {
+  if (memory_bytes && resident_set_bytes() > *memory_bytes)
+    throw ResourceError("--memory", "this preprocess needs more than " + std::to_string(*memory_bytes >> 20) + "M");
+}
+
 }  // namespace
 
 ExitCode run_preprocess(const Arguments& arguments, Console& console) {
@@ -72,8 +78,11 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   TunnelRecord tunnels;
   tunnels.shape = storage.tunnels;
   if (storage.atoms > 0) tunnels.atoms = atoms_of(*loaded.state, storage.atoms);
-  Image image =
-      preprocess(loaded.state->scene(), arguments.view.sampling, stats, console.stage("preprocess"), &tunnels);
+  const auto within_memory = [&, show = console.stage("preprocess")](double share) {
+    keep_within(arguments.structures.memory_bytes);
+    if (show) show(share);
+  };
+  Image image = preprocess(loaded.state->scene(), arguments.view.sampling, stats, within_memory, &tunnels);
   console.end_stage();
   span.emplace(console.trace(), "write cache");
   const std::size_t paths = image.paths.size();

@@ -168,19 +168,22 @@ class ReplayCommand {
   CacheFacts facts_;
 };
 
-/// The tunnels of the cache, where the command line does not say otherwise; in words, what becomes of them if it does.
-void take_tunnels_of(const Json& manifest, Arguments& arguments, Console& console) {
+/// The structures of the cache, where the command line does not say otherwise; in words, what becomes of its tunnels if
+/// it does.
+void take_structures_of(const Json& manifest, Arguments& arguments, Console& console) {
   const Json& storage = manifest["content"]["storage"];
-  StructureOptions stored;
   const auto number = [&](const char* key) { return storage[key].get<std::uint32_t>(); };
+  StructureOptions stored;
+  stored.groups = number("groups");
+  stored.atoms = number("atoms");
+  stored.color_trees_percent = storage["color_trees_percent"].get<double>();
   const bool has_tunnels = number("tunnels") > 0;
   if (has_tunnels) {
     stored.tunnels = number("tunnels");
     stored.tunnel_levels = number("tunnel_levels");
-    if (stored.tunnels > 1) stored.atoms = number("atoms");
     if (!storage["most_tunnels"].is_null()) stored.most_tunnels = storage["most_tunnels"].get<std::uint64_t>();
   }
-  take_tunnels(stored, arguments);
+  take_structures(stored, arguments);
   const StructureOptions& wanted = arguments.structures;
   const bool is_same = wanted.tunnels == stored.tunnels && wanted.tunnel_levels == stored.tunnel_levels &&
                        wanted.most_tunnels == stored.most_tunnels &&
@@ -200,7 +203,7 @@ ExitCode run_replay(const Arguments& given, Console& console) {
   const std::shared_ptr<const DisplayView> view = display_view_of_environment();
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);
-  take_tunnels_of(manifest, arguments, console);
+  take_structures_of(manifest, arguments, console);
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, view.get());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
   // Also for runs that are complete: the cache and the journals must be as the command says.

@@ -86,4 +86,14 @@ StepRange parse_steps(std::string_view option, std::string_view text) {
   return {*first, last};
 }
 
+std::vector<std::string> marked_values(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool is_number = word.size() > 1 && word[0] == '-' && (word[1] == '.' || (word[1] >= '0' && word[1] <= '9'));
+    words.push_back(is_number || word.starts_with('[') ? " " + word : word);
+  }
+  return words;
+}
+
 }  // namespace relook

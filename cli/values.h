@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "engine/report.h"
 
@@ -20,5 +21,8 @@ namespace relook {
 
 /// "3", "2-5", "4-": first <= last.
 [[nodiscard]] StepRange parse_steps(std::string_view option, std::string_view text);
+
+/// The command line with values marked by a space that CLI11 would take for an option (-1..1:5) or a list ([1,0,0]).
+[[nodiscard]] std::vector<std::string> marked_values(int argc, const char* const* argv);
 
 }  // namespace relook

@@ -369,6 +369,39 @@ TEST(Patch, replace_below_a_displacement_finds_its_mapping) {
   EXPECT_EQ(look_at(state, "/nodes/Floor/extras/relook/displacement/mapping/kind"), "solid");
 }
 
+TEST(Patch, replace_below_a_displacement_finds_its_texture_transform) {
+  SceneState state = small_state();
+  const std::string displacement = "/nodes/Sphere/extras/relook/displacement";
+  (void)apply_json(
+      state, R"([{"op": "add", "path": "/nodes/Sphere/extras", "value": {"relook": {"displacement": {"texture": "Bumps"}}}},
+                 {"op": "replace", "path": ")" +
+                 displacement + R"(/extensions/KHR_texture_transform/scale", "value": [2, 3]},
+                 {"op": "replace", "path": ")" +
+                 displacement + R"(/extensions/KHR_texture_transform/offset/1", "value": 0.25},
+                 {"op": "replace", "path": ")" +
+                 displacement + R"(/extensions/KHR_texture_transform/rotation", "value": 0.5},
+                 {"op": "replace", "path": ")" +
+                 displacement + R"(/texCoord", "value": 1}])");
+  for (const Object& object : state.scene().objects) {
+    if (object.node != "Sphere") continue;
+    ASSERT_TRUE(object.displacement);
+    const TextureSlot& slot = object.displacement->texture;
+    EXPECT_EQ(slot.scale, Imath::V2f(2, 3));
+    EXPECT_EQ(slot.offset, Imath::V2f(0, 0.25F));
+    EXPECT_EQ(slot.rotation, 0.5F);
+    EXPECT_EQ(slot.texcoord, 1);
+  }
+  EXPECT_EQ(message_of([&] {
+              (void)apply_json(state, R"([{"op": "replace", "path": ")" + displacement + R"(/texCoord", "value": 2}])");
+            }),
+            "j.json: /edit/0/value: 2 is above 1");
+  EXPECT_EQ(message_of([&] {
+              (void)apply_json(state, R"([{"op": "add", "path": ")" + displacement +
+                                          R"(/extensions/KHR_texture_transform/offest", "value": [0, 0]}])");
+            }),
+            "j.json: /edit/0/path: unknown key \"offest\"; did you mean \"offset\"?");
+}
+
 TEST(PatchErrors, only_replace_finds_what_is_absent) {
   EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/lights/Bulb/range"}])"),
             "/edit/0/path: no \"range\" in /lights/Bulb");

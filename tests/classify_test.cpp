@@ -97,6 +97,10 @@ TEST(Table1, geometric_rows) {
       {"/nodes/Sphere/extras", "{}", R"({"relook": {"displacement": {"texture": "Bumps"}}})"},
       {"/nodes/Sphere/extras", R"({"relook": {"displacement": {"texture": "Bumps", "scale": 1}}})",
        R"({"relook": {"displacement": {"texture": "Bumps", "scale": 2}}})"},
+      {"/nodes/Sphere/extras", R"({"relook": {"displacement": {"texture": "Bumps"}}})",
+       R"({"relook": {"displacement": {"texture": "Bumps", "texCoord": 1}}})"},
+      {"/nodes/Sphere/extras", R"({"relook": {"displacement": {"texture": "Bumps"}}})",
+       R"({"relook": {"displacement": {"texture": "Bumps", "extensions": {"KHR_texture_transform": {"offset": [0.5, 0]}}}}})"},
   };
   for (const Row& row : rows) expect_class(row, ChangeClass::geometric);
 }

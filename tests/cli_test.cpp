@@ -111,7 +111,7 @@ TEST_F(Cli, usage_errors_are_one_line_and_exit_1) {
   expect_error(render_with({"--progress", "fancy"}), 1, "--progress");
   expect_error(render_with({"--bogus"}), 1, "--bogus");
   expect_error(render_with({"--step", "2"}), 1, "--journal");
-  expect_error(relook({"preprocess", kScene, "-o", at("c"), "--memory", "2X"}), 1, "--memory: \"2X\"");
+  expect_error(relook({"replay", at("c"), at("j"), "-o", at("r"), "--memory", "2X"}), 1, "--memory: \"2X\"");
   expect_error(relook({"preprocess", kScene, "-o", at("c"), "--ray-trees", "101"}), 1, "--ray-trees");
   expect_error(relook({"replay", at("c"), at("j"), "-o", at("r"), "--verify=0"}), 1, "--verify");
   EXPECT_FALSE(std::filesystem::exists(at("x.exr")));

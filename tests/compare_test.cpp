@@ -58,6 +58,9 @@ TEST_F(CompareFrames, thresholds_decide_the_exit_code) {
     EXPECT_EQ(compare({at("a.exr"), at("b.exr"), "--fail", value}).exit_code, 1) << value;
   EXPECT_EQ(compare({at("a.exr"), at("b.exr"), "--failpercent", "101"}).exit_code, 1);
   EXPECT_EQ(compare({at("a.exr"), at("b.exr"), "--exact", "--failflip", "0.1"}).exit_code, 1);
+  EXPECT_EQ(compare({at("a.exr"), at("b.exr"), "--exact", "--peak", "2"}).exit_code, 1);
+  for (const std::string value : {"0", "-1", "nan", "inf"})
+    EXPECT_EQ(compare({at("a.exr"), at("b.exr"), "--peak", value}).exit_code, 1) << value;
   EXPECT_EQ(compare({at("a.exr")}).exit_code, 1);
 }
 
@@ -76,6 +79,12 @@ TEST_F(CompareFrames, results_are_json_on_stdout_or_in_a_file) {
   EXPECT_EQ(json("two.json"), printed);
   const Json exact = parse_json(compare({at("a.exr"), at("b.exr"), "--json", "--exact"}).output, "stdout");
   EXPECT_TRUE(exact["frames"]["b.exr"]["flip"].is_null());
+  EXPECT_TRUE(exact["psnr_peak"].is_null());
+  EXPECT_EQ(printed["psnr_peak"], 1);
+  const Json bright = parse_json(compare({at("a.exr"), at("b.exr"), "--json", "--peak", "100"}).output, "stdout");
+  EXPECT_EQ(bright["psnr_peak"], 100);
+  EXPECT_NEAR(bright["frames"]["b.exr"]["psnr"].get<double>(), printed["frames"]["b.exr"]["psnr"].get<double>() + 40,
+              1e-9);
 }
 
 TEST_F(CompareFrames, the_page_is_whole_and_takes_names_as_text) {

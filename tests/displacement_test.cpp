@@ -6,6 +6,7 @@
 #include <map>
 
 #include "look_fixture.h"
+#include "scene/procedural.h"
 
 namespace relook {
 namespace {
@@ -77,6 +78,50 @@ TEST(Displacement, a_texture_lifts_what_is_bright) {
   const Mesh again = displaced(mesh, displacement);
   EXPECT_EQ(again.positions, moved.positions);
   EXPECT_EQ(again.normals, moved.normals);
+}
+
+/// The square, subdivided four times and displaced by a checker of one unit in uv, transformed by `set`.
+template <class Set>
+Mesh checked_square(const Set& set) {
+  Mesh mesh = square_mesh();
+  mesh.normals.assign(4, Normal(0, 1, 0));
+  mesh.uv[1] = mesh.uv[0];
+  for (Uv& uv : mesh.uv[1]) uv = Uv(uv.y * 3, uv.x);
+  Displacement displacement = constant_displacement(1, 4);
+  displacement.texture.kind = TextureKind::procedural;
+  displacement.texture.procedural.kind = ProceduralKind::checker;
+  displacement.texture.procedural.scale = 3;
+  set(displacement.texture);
+  return displaced(mesh, displacement);
+}
+
+TEST(Displacement, a_map_is_offset_scaled_and_turned_as_any_texture_is) {
+  const Mesh plain = checked_square([](TextureSlot&) {});
+  const auto heights_are = [&](const Mesh& mesh, const auto& uv_of) {
+    std::size_t lifted = 0;
+    Procedural checker;
+    checker.kind = ProceduralKind::checker;
+    checker.scale = 3;
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const Uv uv = uv_of(plain.uv[0][i]);
+      const float height = evaluate(checker, Point(uv.x, uv.y, 0)).r - 0.5F;
+      EXPECT_FLOAT_EQ(mesh.positions[i].y, height) << i;
+      lifted += height > 0 ? 1 : 0;
+    }
+    EXPECT_GT(lifted, 0U);
+    EXPECT_LT(lifted, mesh.positions.size());
+  };
+  heights_are(plain, [](Uv uv) { return uv; });
+  heights_are(checked_square([](TextureSlot& slot) { slot.offset = {0.21F, 0.4F}; }),
+              [](Uv uv) { return uv + Uv(0.21F, 0.4F); });
+  heights_are(checked_square([](TextureSlot& slot) { slot.scale = {2, 0.5F}; }),
+              [](Uv uv) { return Uv(uv.x * 2, uv.y * 0.5F); });
+  heights_are(checked_square([](TextureSlot& slot) {
+                slot.rotation = 1.5707963F;
+                slot.offset = {0.01F, 0.01F};
+              }),
+              [](Uv uv) { return Uv(uv.y + 0.01F, 0.01F - uv.x); });
+  heights_are(checked_square([](TextureSlot& slot) { slot.texcoord = 1; }), [](Uv uv) { return Uv(uv.y * 3, uv.x); });
 }
 
 TEST(Displacement, too_much_subdivision_is_refused_with_the_edit) {

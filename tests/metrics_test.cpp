@@ -112,17 +112,28 @@ TEST(Flip, black_and_bright_frames_and_small_ones_have_finite_errors) {
   EXPECT_FALSE(hdr_flip(black, broken));
 }
 
-// Expected: the formula in double precision (scipy's correlate1d), and OpenImageIO's definition of PSNR.
+// Expected: the formula in double precision (scipy's correlate1d); PSNR is 20 log10(white / RMS error).
 TEST(Similarity, ssim_and_psnr_have_the_values_of_their_definitions) {
   const FramePair pair = pattern();
   EXPECT_NEAR(*ssim(pair.a, pair.b), 0.98712546, 2e-6);
   EXPECT_EQ(ssim(pair.a, pair.a), 1.0);
   const FrameDifference difference = compare_frames(pair.a, pair.b);
   EXPECT_NEAR(difference.rms_error, 0.35487872, 1e-8);
-  EXPECT_NEAR(*psnr(pair.a, pair.b, difference), 28.722635, 1e-6);
-  EXPECT_FALSE(psnr(pair.a, pair.a, compare_frames(pair.a, pair.a)));
+  EXPECT_NEAR(*psnr(difference, {1}), 8.998401, 1e-5);
+  EXPECT_NEAR(*psnr(difference, {10}), 28.998401, 1e-5);
+  EXPECT_FALSE(psnr(compare_frames(pair.a, pair.a), {1}));
   const Frame small{10, 40, std::vector<Rgba>(400)};
   EXPECT_FALSE(ssim(small, small));
+}
+
+TEST(Similarity, a_bright_pixel_that_both_frames_have_does_not_raise_psnr) {
+  FramePair pair{{20, 10, std::vector<Rgba>(200, Rgba(0.1F, 0.6F, 0.1F, 1))},
+                 {20, 10, std::vector<Rgba>(200, Rgba(0.6F, 0.1F, 0.1F, 1))}};
+  const std::optional<double> plain = compare_closely(pair.a, pair.b, {}, DisplayWhite()).psnr;
+  for (Frame* frame : {&pair.a, &pair.b}) frame->pixels[7] = Rgba(50'000, 50'000, 50'000, 1);
+  const std::optional<double> with_highlight = compare_closely(pair.a, pair.b, {}, DisplayWhite()).psnr;
+  EXPECT_NEAR(*plain, 20 * std::log10(1 / std::sqrt(0.125)), 1e-4);
+  EXPECT_NEAR(*with_highlight, *plain, 0.03);
 }
 
 FramePair one_pixel(float from, float to) {
@@ -134,7 +145,7 @@ FramePair one_pixel(float from, float to) {
 }
 
 Verdict verdict(const FramePair& pair, const Thresholds& thresholds) {
-  return compare_closely(pair.a, pair.b, thresholds, true).verdict;
+  return compare_closely(pair.a, pair.b, thresholds, DisplayWhite()).verdict;
 }
 
 TEST(FrameComparison, without_thresholds_one_bit_is_a_failure) {
@@ -164,7 +175,7 @@ TEST(FrameComparison, differences_that_are_not_finite_never_pass) {
   for (const auto& [from, to] :
        {std::pair{nan, 1.0F}, {1.0F, nan}, {infinity, 1.0F}, {-infinity, infinity}, {nan, -nan}})
     EXPECT_EQ(verdict(one_pixel(from, to), lenient), Verdict::failure) << from << " " << to;
-  const FrameComparison same = compare_closely(one_pixel(1, nan).b, one_pixel(1, nan).b, {}, true);
+  const FrameComparison same = compare_closely(one_pixel(1, nan).b, one_pixel(1, nan).b, {}, DisplayWhite());
   EXPECT_EQ(same.verdict, Verdict::equal) << "the same bits";
   EXPECT_EQ(same.not_finite_a, 1U);
 }
@@ -173,14 +184,14 @@ TEST(FrameComparison, the_worst_pixel_is_named_with_all_channels) {
   FramePair pair = one_pixel(0.5F, 0.75F);
   pair.b.pixels[3].a = 0.9F;
   pair.b.pixels[150].r = 1.25F;  // as bad, but later
-  const Json json = comparison_json(compare_closely(pair.a, pair.b, {}, true));
+  const Json json = comparison_json(compare_closely(pair.a, pair.b, {}, DisplayWhite()));
   EXPECT_EQ(json["worst_pixel"]["x"], 7);
   EXPECT_EQ(json["worst_pixel"]["y"], 2);
   EXPECT_EQ(json["worst_pixel"]["a"], Json::parse("[1.0, 0.5, 1.0, 1.0]"));
   EXPECT_EQ(json["worst_pixel"]["b"], Json::parse("[1.0, 0.75, 1.0, 1.0]"));
   EXPECT_EQ(json["pixels_above_fail"], 3);
   pair.b.pixels[150].r = std::numeric_limits<float>::quiet_NaN();
-  const Json broken = comparison_json(compare_closely(pair.a, pair.b, {}, true));
+  const Json broken = comparison_json(compare_closely(pair.a, pair.b, {}, DisplayWhite()));
   EXPECT_EQ(broken["worst_pixel"]["x"], 10);
   EXPECT_EQ(broken["worst_pixel"]["b"][0], "nan");
   EXPECT_TRUE(broken["flip"].is_null());

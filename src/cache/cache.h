@@ -25,6 +25,8 @@ struct StorageOptions {
   std::optional<std::uint64_t> disk_bytes;  // of the whole cache, at most
   TunnelShape tunnels{0, 2, std::nullopt};
   std::uint32_t atoms = 0;  // depth of the node hierarchy from which tunnels count nodes as one object; 0: none
+  std::uint32_t groups = 4;          // of a replay that does not say otherwise: most paths of a group; 0: none
+  double color_trees_percent = 100;  // of such a replay: share of the samples whose colour trees are kept
   /// Are tunnels of a shape these? Where a region has one, paths make no difference.
   [[nodiscard]] bool has_tunnels_like(const TunnelShape& shape, std::uint32_t of_atoms) const {
     return tunnels == shape && (tunnels.of_region < 2 || atoms == of_atoms);

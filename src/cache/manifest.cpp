@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "region/path_groups.h"
 #include "trace/shadow_counter.h"
 
 namespace relook {
@@ -52,7 +53,9 @@ Json storage_json(const StorageOptions& storage) {
           {"tunnels", storage.tunnels.of_region},
           {"tunnel_levels", storage.tunnels.dropped_levels},
           {"most_tunnels", storage.tunnels.of_image ? Json(*storage.tunnels.of_image) : Json()},
-          {"atoms", storage.atoms}};
+          {"atoms", storage.atoms},
+          {"groups", storage.groups},
+          {"color_trees_percent", storage.color_trees_percent}};
 }
 
 std::optional<std::uint64_t> number_or_null(const JsonView& view) {
@@ -68,6 +71,8 @@ StorageOptions read_storage(const JsonView& view) {
   storage.tunnels.dropped_levels = static_cast<std::uint32_t>(view.at("tunnel_levels").integer(0, kTileLevel));
   storage.tunnels.of_image = number_or_null(view.at("most_tunnels"));
   storage.atoms = static_cast<std::uint32_t>(view.at("atoms").integer(0, kMostAtoms));
+  storage.groups = static_cast<std::uint32_t>(view.at("groups").integer(0, kMostGroupPaths));
+  storage.color_trees_percent = view.at("color_trees_percent").number(0, 100);
   return storage;
 }
 

@@ -59,6 +59,9 @@ CacheAnswer other_content(const Manifest& there, const Manifest& wanted) {
   compare(shape.of_image == other_shape.of_image, "--most-tunnels",
           shape.of_image ? std::to_string(*shape.of_image) : "none");
   compare(storage.atoms == wanted.storage.atoms, "--atoms", std::to_string(storage.atoms));
+  compare(storage.groups == wanted.storage.groups, "--groups", std::to_string(storage.groups));
+  compare(storage.color_trees_percent == wanted.storage.color_trees_percent, "--color-trees",
+          number(storage.color_trees_percent));
   if (others.empty()) return {};
   return {is_same_scene ? CacheFault::other_options : CacheFault::other_scene, std::string(kManifestName),
           listed(others)};

@@ -81,8 +81,9 @@ Frame black(const PixelWindow& window) {
 }
 
 /// The frame's own figures, when there is a picture: all of its pixels differ when only one file has an alpha.
-void set_picture(FileComparison& files, const PixelWindow& window, const Thresholds& thresholds, bool looks) {
-  FrameComparison comparison = compare_closely(files.a, files.b, thresholds, looks);
+void set_picture(FileComparison& files, const PixelWindow& window, const Thresholds& thresholds,
+                 const std::optional<DisplayWhite>& white) {
+  FrameComparison comparison = compare_closely(files.a, files.b, thresholds, white);
   comparison.layers = std::move(files.comparison.layers);
   comparison.own_layer = files.comparison.own_layer;
   if (comparison.worst) {
@@ -126,7 +127,8 @@ void set_whole_verdict(FrameComparison& comparison, bool has_display_moved) {
 
 }  // namespace
 
-FileComparison compare_exr_files(const ExrFile& a, const ExrFile& b, const Thresholds& thresholds, bool looks) {
+FileComparison compare_exr_files(const ExrFile& a, const ExrFile& b, const Thresholds& thresholds,
+                                 const std::optional<DisplayWhite>& white) {
   if (size_text(a.display()) != size_text(b.display()))
     throw InputError(b.name(), "",
                      size_text(b.display()) + " pixels, not the " + size_text(a.display()) + " of " + a.name());
@@ -155,7 +157,7 @@ FileComparison compare_exr_files(const ExrFile& a, const ExrFile& b, const Thres
   }
   if (pictures) {
     files.a = std::move(pictures->a), files.b = std::move(pictures->b);
-    set_picture(files, pictures->window, thresholds, looks);
+    set_picture(files, pictures->window, thresholds, white);
   } else {
     set_layer(files.comparison);
   }

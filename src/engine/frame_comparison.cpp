@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "base/error.h"
-#include "engine/similarity.h"
 
 namespace relook {
 namespace {
@@ -90,14 +89,15 @@ Json flip_json(const FrameComparison& comparison) {
 
 }  // namespace
 
-FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds, bool looks) {
+FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds,
+                                const std::optional<DisplayWhite>& white) {
   FrameComparison comparison;
   comparison.difference = compare_frames(a, b);
   visit_pixels(a, b, thresholds, comparison);
   const bool is_equal = comparison.difference.pixels_different == 0;
   if (is_equal) comparison.ssim = 1;
-  if (!is_equal && looks) {
-    comparison.psnr = psnr(a, b, comparison.difference);
+  if (!is_equal && white) {
+    comparison.psnr = psnr(comparison.difference, *white);
     comparison.ssim = ssim(a, b);
     if (std::optional<FlipErrors> flip = hdr_flip(a, b)) {
       comparison.flip = {flip->mean(), double{*std::ranges::max_element(flip->errors)}, flip->exposures};

@@ -10,6 +10,7 @@
 #include "engine/flip.h"
 #include "engine/image.h"
 #include "engine/layer_comparison.h"
+#include "engine/similarity.h"
 #include "engine/thresholds.h"
 
 namespace relook {
@@ -43,8 +44,9 @@ struct FrameComparison {
   std::string first_difference;         // "channel depth.Z"; "" when equal
 };
 
-/// Requires: frames of one size. `looks`: also PSNR, SSIM and FLIP, for frames that differ.
-[[nodiscard]] FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds, bool looks);
+/// Requires: frames of one size. `white`: also PSNR with this peak, SSIM and FLIP, for frames that differ.
+[[nodiscard]] FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds,
+                                              const std::optional<DisplayWhite>& white);
 
 /// difference_json() with psnr, ssim, flip, worst_pixel, not_finite, pixels_above_fail, verdict, first_difference (null
 /// when equal) and layers. Channels that are not finite are "nan", "inf" or "-inf". Equal frames have psnr null

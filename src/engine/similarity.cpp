@@ -49,14 +49,9 @@ Plane product(const Plane& a, const Plane& b) {
 
 }  // namespace
 
-std::optional<double> psnr(const Frame& a, const Frame& b, const FrameDifference& difference) {
+std::optional<double> psnr(const FrameDifference& difference, DisplayWhite white) {
   if (!std::isfinite(difference.rms_error) || difference.rms_error == 0) return std::nullopt;
-  float peak = 1;
-  for (const Frame* frame : {&a, &b})
-    for (const Rgba& pixel : frame->pixels)
-      for (const float value : {pixel.r, pixel.g, pixel.b, pixel.a})
-        if (std::isfinite(value)) peak = std::max(peak, std::abs(value));
-  return 20 * std::log10(double{peak} / difference.rms_error);
+  return 20 * std::log10(white.value / difference.rms_error);
 }
 
 std::optional<double> ssim(const Frame& a, const Frame& b) {

@@ -111,16 +111,21 @@ void set_mapping(const Json& mapping, TextureSlot& slot) {
   slot.axis = enum_of<std::uint8_t>(mapping["axis"], kAxes);
 }
 
-TextureSlot slot_of(const CompileContext& context, const Json& info, bool is_color, const std::string& pointer) {
-  TextureSlot slot;
-  set_texture(context, info["index"], is_color, slot, pointer + "/index");
-  if (slot.kind == TextureKind::none) return slot;
+/// texCoord and KHR_texture_transform.
+void set_coordinates(const Json& info, TextureSlot& slot) {
   slot.texcoord = info["texCoord"].get<std::uint8_t>();
   const Json& transform = info["extensions"]["KHR_texture_transform"];
   slot.offset = {float_of(transform["offset"][0]), float_of(transform["offset"][1])};
   slot.scale = {float_of(transform["scale"][0]), float_of(transform["scale"][1])};
   slot.rotation = float_of(transform["rotation"]);
   if (transform.contains("texCoord")) slot.texcoord = transform["texCoord"].get<std::uint8_t>();
+}
+
+TextureSlot slot_of(const CompileContext& context, const Json& info, bool is_color, const std::string& pointer) {
+  TextureSlot slot;
+  set_texture(context, info["index"], is_color, slot, pointer + "/index");
+  if (slot.kind == TextureKind::none) return slot;
+  set_coordinates(info, slot);
   if (const Json* mapping = member_at(info, {"extras", "relook", "mapping"})) set_mapping(*mapping, slot);
   return slot;
 }
@@ -232,6 +237,7 @@ void decode_images(const LookDocument& document, PyramidStore& pyramids) {
 Displacement compile_displacement(const CompileContext& context, const Json& value, const std::string& pointer) {
   Displacement displacement;
   set_texture(context, value["texture"], false, displacement.texture, pointer + "/texture");
+  if (displacement.texture.kind != TextureKind::none) set_coordinates(value, displacement.texture);
   if (value.contains("mapping")) set_mapping(value["mapping"], displacement.texture);
   displacement.scale = float_of(value["scale"]);
   displacement.midlevel = float_of(value["midlevel"]);

@@ -63,14 +63,21 @@ const Schema& mapping_schema() {
   return mapping;
 }
 
-/// textureInfo, with the extra number of normal and occlusion textures if there is one.
-Schema texture_info(std::vector<Field> extra = {}) {
+Field texture_coordinates() { return integer("texCoord", 0, 0, 1); }
+
+/// KHR_texture_transform of a textureInfo or a displacement map.
+Field texture_transform() {
   static const Schema transform{{reals("offset", {0.0, 0.0}, -kMost, kMost), number("rotation", 0.0, -kMost, kMost),
                                  reals("scale", {1.0, 1.0}, -kMost, kMost), integer("texCoord", {}, 0, 1)}};
   static const Schema extensions = wrapped("KHR_texture_transform", transform);
+  return implied("extensions", extensions);
+}
+
+/// textureInfo, with the extra number of normal and occlusion textures if there is one.
+Schema texture_info(std::vector<Field> extra = {}) {
   static const Schema relook{{unwritten(optional("mapping", mapping_schema()))}};
   static const Schema extras = wrapped("relook", relook, false);
-  Schema info{{name("index", Target::textures, true), integer("texCoord", 0, 0, 1), implied("extensions", extensions),
+  Schema info{{name("index", Target::textures, true), texture_coordinates(), texture_transform(),
                optional("extras", extras)}};
   for (Field& field : extra) info.fields.push_back(std::move(field));
   return info;
@@ -187,6 +194,7 @@ const Schema& node_schema() {
   static const Schema extensions{{optional("KHR_lights_punctual", light), implied("KHR_node_visibility", visibility)}};
   static const Schema displacement{{name("texture", Target::textures, true), number("scale", 0.1, -kMost, kMost),
                                     number("midlevel", 0.5, -kMost, kMost), integer("subdivide", 0, 0, 6),
+                                    texture_coordinates(), texture_transform(),
                                     unwritten(optional("mapping", mapping_schema()))}};
   static const Schema relook{{optional("displacement", displacement), text("instances")}};
   static const Schema extras = wrapped("relook", relook, false);
