@@ -8,6 +8,7 @@
 #include "engine/counters.h"
 #include "engine/image.h"
 #include "scene/scene.h"
+#include "trace/tracer.h"
 
 namespace relook {
 
@@ -19,9 +20,9 @@ struct RenderStats {
   double build_seconds = 0, render_seconds = 0;  // acceleration structures; everything else
 };
 
-/// The frame of `scene` as it is now.
+/// The frame of `scene` as it is now. `monitor`: of its acceleration structures.
 [[nodiscard]] Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const MemoryMonitor& monitor = {});
 /// The same frame, bit for bit, with paths, ray trees and sample colours kept. Ids do not depend on the thread count.
 [[nodiscard]] Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats,
                                const Progress& progress = {});
