@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "engine/compare.h"
+#include "engine/memory_needs.h"
 #include "engine/render.h"
 #include "report/places.h"
 #include "load_cache.h"
@@ -121,6 +123,7 @@ std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
   runs_ = static_cast<double>(runs);
   try {
     run_steps();
+    make_room_for_page();
     folder_.write_report(report_, false, [this] { console_.check_interrupt(); });
   } catch (const Interrupted&) {
     leave_off();
@@ -129,6 +132,13 @@ std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
   if (!arguments_.access_log.empty()) write_file(arguments_.access_log, replayer_.residency().access_log());
   print_summary();
   return pixels_different_ + plan_.pixels_different();
+}
+
+void JournalRun::make_room_for_page() {
+  Residency& residency = replayer_.residency();
+  if (!residency.is_limited()) return;
+  static_cast<void>(residency.make_room(kPageBytes));
+  trim_allocator();
 }
 
 /// Reports the frames that are finished. The same command takes the run up again.
@@ -320,10 +330,18 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
 }
 
 Frame JournalRun::full_render() {
-  const SceneState fresh(replayer_.state().document(), report_.camera, replayer_.state().pyramids());
+  Residency& residency = replayer_.residency();
+  const Residency::Aside aside = residency.begin_aside();
+  const SceneState& state = replayer_.state();
+  const Scene scene = compiled_scene(state.document(), report_.camera, *state.pyramids());
   RenderStats stats;
   const TraceScope span = console_.span("full render");
-  Frame frame = render(fresh.scene(), report_.view, stats, console_.stage("full render"));
+  const auto progress = [&residency, shown = console_.stage("full render")](double share) {
+    residency.measure_aside();
+    shown(share);
+  };
+  const MemoryMonitor monitor = [&](std::int64_t bytes) { residency.claim(bytes); };
+  Frame frame = render(scene, report_.view, stats, progress, residency.is_limited() ? monitor : MemoryMonitor());
   console_.end_stage();
   if (!report_.full_render_seconds) report_.full_render_seconds = stats.build_seconds + stats.render_seconds;
   return frame;

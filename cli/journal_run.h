@@ -49,6 +49,7 @@ class JournalRun {
 
  private:
   void run_steps();
+  void make_room_for_page();
   void leave_off();
   void catch_up();
   void run_step(std::uint32_t step);

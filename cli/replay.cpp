@@ -7,6 +7,7 @@
 #include "edit/apply.h"
 #include "engine/chosen_parameters.h"
 #include "engine/frame_layers.h"
+#include "engine/memory_needs.h"
 #include "journal_run.h"
 #include "load_cache.h"
 #include "load_scene.h"
@@ -60,7 +61,6 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
   options.memory_bytes = structures.memory_bytes;
   const std::uint64_t tile_bytes = thread_count() * (std::uint64_t{26} << 20);  // about what works on tiles and writes
   options.reserve_bytes = options.memory_bytes.value_or(0) / 16 + tile_bytes;
-  options.working_bytes = tile_bytes / 2;
   for (const EvictionPolicy policy : kEvictionPolicies)
     if (policy_name(policy) == structures.policy) options.policy = policy;
   options.spill_folder = arguments.spill.empty() ? existing_folder(folder) : std::filesystem::path(arguments.spill);
@@ -142,6 +142,7 @@ class ReplayCommand {
     if (!opened_.state) open_cache_anew();  // pieces of the run before may be anywhere
     const bool is_last = i + 1 == plans_.size();
     OpenedCache next = !is_last && !residency_ ? copy_of(opened_) : OpenedCache();
+    if (residency_ && residency_->is_limited()) foresee_needs(journals_[i]);
     const std::vector<ParameterSet> chosen = chosen_parameters(*opened_.state, arguments_.structures.params);
     JournalRun run(arguments_, console_, journals_[i], plans_[i], std::exchange(opened_, std::move(next)),
                    std::move(residency_), facts_, view_);
@@ -152,6 +153,13 @@ class ReplayCommand {
   }
 
  private:
+  void foresee_needs(const Journal& journal) {
+    const bool renders_aside = arguments_.verify_percent || arguments_.baseline;
+    const bool needs_rays = shoots_rays(*opened_.state, journal);
+    const ReplayWork work{needs_rays, renders_aside, arguments_.report == ReportKind::html};
+    residency_->set_needs(memory_needs(opened_.state->scene(), thread_count(), work));
+  }
+
   void open_cache_anew() {
     const TraceScope reading = console_.span("read cache");
     residency_ = residency_of(arguments_, plans_.front().folder());

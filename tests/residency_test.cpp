@@ -71,6 +71,58 @@ TEST_F(Residence, keeps_within_the_limit_and_gives_back_what_was_spilled) {
   EXPECT_EQ(residency.take_counts().evicted[0], 0U);
 }
 
+TEST_F(Residence, makes_room_for_work_aside_before_it_is_taken_and_forgets_it_afterwards) {
+  outside_bytes_ = 1000;
+  Residency& residency = start(outside_bytes_ + 8 * kPieceBytes, true);
+  residency.set_needs({.change_bytes = 0, .aside_bytes = 2 * kPieceBytes, .structures_bytes = 0});
+  for (std::size_t tile = 0; tile < kTiles; ++tile) set(tile);
+  outside_bytes_ = 1000 + 8 * kPieceBytes;  // pieces are of the process, too
+  residency.begin_change();
+  EXPECT_EQ(residents().size(), 8U);
+  const auto settle = [&](std::uint64_t aside) { outside_bytes_ = 1000 + residents().size() * kPieceBytes + aside; };
+  {
+    const Residency::Aside aside = residency.begin_aside();
+    EXPECT_EQ(residents().size(), 6U) << "what the needs foresee";
+    settle(2000);
+    residency.claim(1000);
+    EXPECT_EQ(residents().size(), 5U) << "one more is about to be taken";
+    settle(3000);
+    residency.measure_aside();
+    EXPECT_EQ(residents().size(), 5U);
+    settle(4000);
+    residency.measure_aside();
+    EXPECT_EQ(residents().size(), 4U) << "more than was claimed";
+    settle(4000);
+  }
+  settle(0);
+  residency.begin_change();
+  for (std::size_t tile = 0; tile < kTiles; ++tile) {
+    use(tile);
+    settle(0);
+  }
+  EXPECT_EQ(residents().size(), 8U) << "what was held aside is no need of changes";
+  const Residency::Aside again = residency.begin_aside();
+  EXPECT_EQ(residents().size(), 4U) << "as much as the last time";
+}
+
+TEST_F(Residence, names_a_floor_with_all_that_is_foreseen) {
+  outside_bytes_ = 100 << 20;
+  Residency& residency = start(50 << 20, true);
+  constexpr std::uint64_t kMegabyte = 1 << 20;
+  const auto floor_with = [&](const MemoryNeeds& needs) -> std::string {
+    residency.set_needs(needs);
+    try {
+      const Residency::Aside aside = residency.begin_aside();
+    } catch (const ResourceError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(floor_with({8 * kMegabyte, 0, 0}), "--memory: this replay needs at least 108M");
+  EXPECT_EQ(floor_with({8 * kMegabyte, 0, 5 * kMegabyte}), "--memory: this replay needs at least 113M");
+  EXPECT_EQ(floor_with({8 * kMegabyte, 20 * kMegabyte, 5 * kMegabyte}), "--memory: this replay needs at least 129M");
+}
+
 TEST_F(Residence, a_piece_on_disk_is_read_once_for_all_who_ask_at_the_same_time) {
   Residency& residency = start(3 * kPieceBytes, true);
   std::atomic<int> reads = 0, reading = 0;

@@ -24,13 +24,19 @@ inline constexpr std::size_t kPieceKinds = 3;
 
 struct ResidencyOptions {
   std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
-  std::uint64_t working_bytes = 0;            // that a change needs beside pieces, the first one three times as much
   std::uint64_t reserve_bytes = 0;            // left to a change beside pieces until one has been measured
   EvictionPolicy policy = EvictionPolicy::weight;
   std::filesystem::path spill_folder;  // "": nothing is spilled
   std::uint64_t disk_bytes = ~std::uint64_t{0};
   bool logs_accesses = false;
   std::function<std::uint64_t()> process_bytes = resident_set_bytes;  // empty: only pieces count
+};
+
+/// What a replay needs beside pieces and what is there before its first change, as far as that can be foreseen.
+struct MemoryNeeds {
+  std::uint64_t change_bytes = 0;      // of a change, while it is worked on
+  std::uint64_t aside_bytes = 0;       // of work aside, see Residency::begin_aside(); 0: there will be none
+  std::uint64_t structures_bytes = 0;  // acceleration structures that changes will build and keep
 };
 
 /// How the owner's data of one kind come and go. The functions are called for one tile at a time, those for different
@@ -80,6 +86,22 @@ class Residency {
     std::size_t tile_ = 0;
   };
 
+  /// While it lives, there is work aside.
+  class Aside {
+   public:
+    explicit Aside(Residency* residency) : residency_(residency) {}
+    Aside(Aside&& other) noexcept : residency_(std::exchange(other.residency_, nullptr)) {}
+    Aside& operator=(Aside&&) = delete;
+    ~Aside() {
+      if (residency_ != nullptr) residency_->end_aside();
+    }
+
+   private:
+    Residency* residency_ = nullptr;
+  };
+
+  /// Before the first change; without, none is foreseen.
+  void set_needs(const MemoryNeeds& needs);
   /// All pieces of the kind are missing then, whatever was there before.
   void add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler);
   [[nodiscard]] bool has_kind(PieceKind kind) const { return !kinds_[static_cast<std::size_t>(kind)].pieces.empty(); }
@@ -116,6 +138,12 @@ class Residency {
   /// A new change begins: ages advance, memory outside of pieces is measured, what is over the budget leaves. Throws
   /// ResourceError that names the floor if the budget cannot be kept.
   void begin_change();
+  /// Work aside begins: between two changes, what it holds is given back before the next (a full render to compare
+  /// with). Pieces leave until what the last one held fits, before the first what the needs foresee; then further ones
+  /// as claim() and measure() say. Throws ResourceError that names the floor.
+  [[nodiscard]] Aside begin_aside();
+  /// Measures what is held aside, and makes room for that. Called as it grows, from any thread.
+  void measure_aside();
   /// `bytes` more are about to be taken beside pieces, before they show in the process; negative: were given back.
   void claim(std::int64_t bytes);
   /// Throws ResourceError that names the floor if what stays is more than the budget.
@@ -168,7 +196,9 @@ class Residency {
   [[nodiscard]] std::uint64_t outside_now() const;
   void measure_outside();
   bool make_room_locked(std::uint64_t bytes);
+  [[nodiscard]] std::uint64_t floor_bytes() const;
   void require_floor_locked() const;
+  void end_aside();
   void list_candidates();
   bool evict(PieceKind kind, std::size_t tile);
   void evict_other(const Victim& victim);
@@ -187,6 +217,11 @@ class Residency {
   std::uint64_t base_bytes_ = 0;     // beside pieces, as this change began
   std::int64_t claimed_bytes_ = 0;   // since then
   std::uint64_t outside_bytes_ = 0;  // beside pieces: base, claims and reserve, or as measured if more
+  MemoryNeeds needs_;
+  bool is_aside_ = false;
+  std::uint64_t before_aside_ = 0;      // beside pieces, as work aside began
+  std::uint64_t aside_most_ = 0;        // beside pieces, the most that has been measured during it
+  std::uint64_t outside_of_change_ = 0;  // outside_bytes_ as work aside began: of the change before it
   double gdsf_inflation_ = 0;
   double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
   double fetch_seconds_per_byte_ = 3e-9;  // of what is stored, measured likewise

@@ -26,6 +26,13 @@ class Rehearsal {
   Rehearsal(SceneState& state, const Journal& journal)
       : state_(state), journal_(journal), counts_(state.slot_counts()), errors_(journal.file) {}
 
+  /// Requires a journal without errors. Of one step at least: not only colours change.
+  [[nodiscard]] bool finds_class_beyond_color() {
+    notes_classes_ = true;
+    static_cast<void>(run());
+    return is_beyond_color_;
+  }
+
   std::vector<std::string> run() {
     try {
       for (const JournalStep& step : journal_.steps) try_step(step);
@@ -54,6 +61,8 @@ class Rehearsal {
         auto transaction = std::make_unique<Transaction>(state_, journal_.file, journal_.path.parent_path());
         const SceneDelta delta = transaction->apply(frames[entry]);
         changes_scene = changes_scene || !delta.empty();
+        if (notes_classes_ && !is_beyond_color_)
+          is_beyond_color_ = classify(state_.scene(), delta).change != ChangeClass::color;
         changes_document = changes_document || (delta.empty() && transaction->has_changes());
         done_.push_back(std::move(transaction));
       }
@@ -85,12 +94,17 @@ class Rehearsal {
   StepErrors errors_;
   std::vector<std::string> warnings_;
   std::size_t idle_steps_ = 0;  // that change nothing
+  bool notes_classes_ = false, is_beyond_color_ = false;
 };
 
 }  // namespace
 
 std::vector<std::string> check_journal(SceneState& state, const Journal& journal) {
   return Rehearsal(state, journal).run();
+}
+
+bool shoots_rays(SceneState& state, const Journal& journal) {
+  return Rehearsal(state, journal).finds_class_beyond_color();
 }
 
 }  // namespace relook

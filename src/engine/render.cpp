@@ -146,11 +146,11 @@ void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint
 
 /// Renders some tiles; `keep`: also the paths, trees and sample colours. `tunnels`: null, or which to keep, too.
 void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t> tiles, bool keep, RenderStats& stats,
-                  const Progress& progress, TunnelRecord* tunnels = nullptr) {
+                  const Progress& progress, TunnelRecord* tunnels = nullptr, const MemoryMonitor& monitor = {}) {
   const auto start = Clock::now();
   const RayScene ray_scene(scene);
   const std::uint32_t shadow_bits = keep ? image.view.shadow_bits : 0;  // colours do not depend on counters
-  Tracer tracer(shadow_bits > 0);
+  Tracer tracer(shadow_bits > 0, monitor);
   const Tracer::TopLevel level = tracer.build(ray_scene);
   stats.build_seconds = seconds_since(start);
 
@@ -200,7 +200,7 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
 
 /// Renders every tile of a new image.
 Image render_image(const Scene& scene, const ViewOptions& view, bool keep, RenderStats& stats,
-                   const Progress& progress, TunnelRecord* tunnels = nullptr) {
+                   const Progress& progress, TunnelRecord* tunnels, const MemoryMonitor& monitor = {}) {
   const std::uint32_t width = scene.camera.width, height = scene.camera.height;
   Image image;
   image.view = view;
@@ -209,14 +209,15 @@ Image render_image(const Scene& scene, const ViewOptions& view, bool keep, Rende
   std::iota(tiles.begin(), tiles.end(), std::size_t{0});
   image.trees.resize(keep ? tiles.size() : 0);
   image.sample_colors.resize(keep ? tiles.size() : 0);
-  render_tiles(scene, image, tiles, keep, stats, progress, tunnels);
+  render_tiles(scene, image, tiles, keep, stats, progress, tunnels, monitor);
   return image;
 }
 
 }  // namespace
 
-Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress) {
-  return std::move(render_image(scene, view, false, stats, progress).frame);
+Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress,
+             const MemoryMonitor& monitor) {
+  return std::move(render_image(scene, view, false, stats, progress, nullptr, monitor).frame);
 }
 
 Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress,

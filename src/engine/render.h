@@ -10,6 +10,7 @@
 #include "region/tile_tunnels.h"
 #include "region/tunnel_shape.h"
 #include "scene/scene.h"
+#include "trace/tracer.h"
 
 namespace relook {
 
@@ -21,9 +22,10 @@ struct RenderStats {
   double build_seconds = 0, render_seconds = 0;  // acceleration structures; everything else
 };
 
-/// The frame of `scene` as it is now.
+/// The frame of `scene` as it is now. `monitor`: of its acceleration structures.
 [[nodiscard]] Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const MemoryMonitor& monitor = {});
+
 /// Tunnels that are built while an image's ray trees are traced.
 struct TunnelRecord {
   TunnelShape shape{0, 2, std::nullopt};

@@ -423,6 +423,7 @@ const SceneState& Replayer::state() const { return impl_->state; }
 const Image& Replayer::image() const { return impl_->image(); }
 const ImageRegions& Replayer::regions() const { return impl_->stored.regions(); }
 const Residency& Replayer::residency() const { return impl_->residency; }
+Residency& Replayer::residency() { return impl_->residency; }
 std::uint64_t Replayer::segments() const { return impl_->stored.segments(); }
 
 Resident Replayer::resident() const {

@@ -35,6 +35,7 @@ class Replayer {
   /// Groups, and tunnels once a step has needed them.
   [[nodiscard]] const ImageRegions& regions() const;
   [[nodiscard]] const Residency& residency() const;
+  [[nodiscard]] Residency& residency();
 
   /// From now on colour trees are kept for these sets of parameters alone, and before a step changes them (paper
   /// 4.1.1): an edit within one set runs its residuals; any other colour edit goes through the ray trees.

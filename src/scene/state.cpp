@@ -8,6 +8,29 @@
 
 namespace relook {
 
+namespace {
+
+/// Into a scene that has its assets and its camera alone.
+void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index) {
+  decode_images(document, pyramids);
+  // The default material comes after those of the document.
+  const std::size_t count = document.look.at("materials").size();
+  index.default_material = MaterialId(static_cast<std::uint32_t>(count));
+  const std::size_t nodes = document.look.at("nodes").size();
+  index.nodes.reserve(nodes);
+  index.objects.reserve(nodes);
+  index.references.reserve(nodes);
+  scene.objects.reserve(nodes);  // one a node, most often
+  std::vector<CompiledEntity> materials, others;
+  for (CompiledEntity& entity : all_entities(document))
+    (entity.place.section == "materials" ? materials : others).push_back(std::move(entity));
+  Compilation(document, pyramids, scene, index, document.file).run_first(materials);
+  scene.materials.emplace_back();
+  Compilation(document, pyramids, scene, index, document.file).run_first(others);
+}
+
+}  // namespace
+
 struct SceneState::Index : SceneIndex {};
 
 SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<PyramidStore> pyramids)
@@ -21,21 +44,7 @@ SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<Pyr
     for (Json& value : document_.look.at(std::string(section_name(section)))) fill_defaults(section, value);
   }
   fill_from_schema(scene_schema(), document_.look.at("scene"));
-  decode_images(document_, *pyramids_);
-  // The default material comes after those of the document.
-  const std::size_t count = document_.look.at("materials").size();
-  index_->default_material = MaterialId(static_cast<std::uint32_t>(count));
-  const std::size_t nodes = document_.look.at("nodes").size();
-  index_->nodes.reserve(nodes);
-  index_->objects.reserve(nodes);
-  index_->references.reserve(nodes);
-  scene_.objects.reserve(nodes);  // one a node, most often
-  std::vector<CompiledEntity> materials, others;
-  for (CompiledEntity& entity : all_entities(document_))
-    (entity.place.section == "materials" ? materials : others).push_back(std::move(entity));
-  Compilation(document_, *pyramids_, scene_, *index_, document_.file).run_first(materials);
-  scene_.materials.emplace_back();
-  Compilation(document_, *pyramids_, scene_, *index_, document_.file).run_first(others);
+  compile_all(document_, *pyramids_, scene_, *index_);
 }
 
 std::string SceneState::parent_of(std::string_view node) const {
@@ -60,6 +69,16 @@ void SceneState::drop_slots_after(const SlotCounts& counts) {
 SceneDelta SceneState::recompile(const std::vector<TouchedEntity>& touched, std::string_view file) {
   set_float_mode();
   return Compilation(document_, *pyramids_, scene_, *index_, file).run(touched);
+}
+
+Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids) {
+  set_float_mode();
+  Scene scene;
+  scene.assets = document.assets;
+  scene.camera = camera;
+  SceneIndex index;
+  compile_all(document, pyramids, scene, index);
+  return scene;
 }
 
 }  // namespace relook

@@ -59,4 +59,8 @@ class SceneState {
   std::shared_ptr<Index> index_;
 };
 
+/// The scene of a document with all its defaults, such as that of a SceneState, compiled from scratch: the one that
+/// SceneState keeps up, in other slots perhaps, without a copy of the document. Throws InputError as SceneState does.
+[[nodiscard]] Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids);
+
 }  // namespace relook
