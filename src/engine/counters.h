@@ -25,7 +25,7 @@ struct Counters {
   CulledSegments culled;                                  // of those not tested, by what ruled them out
   std::uint64_t ray_updates = 0;                          // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
-  std::uint64_t object_rays = 0;                          // rays against one known object, to rebuild a ray tree
+  std::uint64_t object_rays = 0;                          // rays and shadow segments against one known object
   std::uint64_t color_trees_evaluated = 0;
   std::uint64_t tunnels_read = 0;  // tiles whose tunnels the cache holds and that were used for the first time
   Moves evicted, rebuilt, reloaded;  // rebuilt: worked out again after it had left or had become invalid

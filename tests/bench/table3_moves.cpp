@@ -74,11 +74,12 @@ struct Row {
   double seconds = 0, share = 0, work = 0, culled = 0;  // culled: by tunnels alone
   void add(const TimedStep& step, double step_work, double pixels) {
     const Counters& counters = step.result.counters;
-    const double tests = static_cast<double>(counters.ray_tests + counters.ray_tests_culled);
+    const CulledSegments& by = counters.culled;
+    const auto tests = static_cast<double>(counters.ray_tests + by.boxes + by.tunnels);  // there would be without them
     seconds += step.seconds;
     share += static_cast<double>(counters.pixels_changed) / pixels;
     work += step_work;
-    if (tests > 0) culled += static_cast<double>(counters.culled.tunnels) / tests;
+    if (tests > 0) culled += static_cast<double>(by.tunnels) / tests;
   }
   void divide(double count) {
     seconds /= count;
