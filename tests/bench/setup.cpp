@@ -9,16 +9,22 @@
 namespace relook {
 
 BenchOptions parse_options(int count, char** arguments) {
-  if (count < 3)
-    throw UsageError(
-        "relook_bench [growth|budget] SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]], relook_bench all ..., or relook_bench "
-        "peaks CACHE JOURNAL");
   BenchOptions options;
-  options.scene = arguments[1];
-  options.journal = arguments[2];
-  if (count > 3 && std::sscanf(arguments[3], "%ux%u", &options.width, &options.height) != 2)
+  std::vector<char*> words;
+  for (int i = 1; i < count; ++i) {
+    if (std::string_view(arguments[i]) != "--camera")
+      words.push_back(arguments[i]);
+    else if (++i < count)
+      options.camera = arguments[i];
+    else
+      throw UsageError("--camera: which one?");
+  }
+  if (words.size() < 2) throw UsageError("SCENE and JOURNAL are missing; tests/bench/README.md has all commands");
+  options.scene = words[0];
+  options.journal = words[1];
+  if (words.size() > 2 && std::sscanf(words[2], "%ux%u", &options.width, &options.height) != 2)
     throw UsageError("the resolution is WIDTHxHEIGHT");
-  if (count > 4) options.view.samples = static_cast<std::uint32_t>(std::strtoul(arguments[4], nullptr, 10));
+  if (words.size() > 3) options.view.samples = static_cast<std::uint32_t>(std::strtoul(words[3], nullptr, 10));
   return options;
 }
 
@@ -29,11 +35,18 @@ void BenchOptions::note(std::string table, std::string row, std::string column, 
       {"", std::move(table), std::move(row), std::move(column), value, std::move(unit), std::move(paper), goal});
 }
 
+LookDocument import_look(const BenchOptions& options) { return make_look_document(import_gltf(options.scene)); }
+
+SceneChoices scene_choices(const BenchOptions& options, const LookDocument& document) {
+  const bool needs_camera = options.camera.empty() && document.cameras.empty();
+  return {needs_camera ? "auto" : options.camera, document.look.at("lights").empty()};
+}
+
 SceneState load_scene(const BenchOptions& options) {
-  LookDocument document = make_look_document(import_gltf(options.scene));
-  const std::string choice = document.cameras.empty() ? "auto" : "";
-  const Camera camera = choose_camera(document, choice, options.width, options.height);
-  if (document.look.at("lights").empty()) add_auto_lights(document, camera);
+  LookDocument document = import_look(options);
+  const SceneChoices choices = scene_choices(options, document);
+  const Camera camera = choose_camera(document, choices.camera, options.width, options.height);
+  if (choices.has_auto_lights) add_auto_lights(document, camera);
   return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
 }
 
