@@ -23,13 +23,13 @@ void write_bench_cache(const BenchOptions& options, const std::filesystem::path&
   run_program(command);
 }
 
-CacheFacts inspect_bench_cache(const std::filesystem::path& cache, const Scratch& scratch) {
+CacheSize inspect_bench_cache(const std::filesystem::path& cache, const ScratchFolder& scratch) {
   const std::filesystem::path file = scratch / "inspect.json";
   run_program({RELOOK_PROGRAM, "inspect", cache.string(), "--json"}, file);
   const Json manifest = parse_json(text_of(read_file(file)), file.string());
   const Json& content = manifest.at("content");
   const Json& pieces = content.at("pieces");
-  CacheFacts facts;
+  CacheSize facts;
   facts.pieces = {pieces.at("ray_paths"), pieces.at("groups"), pieces.at("ray_trees"), pieces.at("tunnels")};
   for (const Json& entry : content.at("files")) {
     const auto name = entry.at("name").get<std::string>();

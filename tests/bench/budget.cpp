@@ -127,7 +127,7 @@ void print_curve(const std::filesystem::path& cache, const Journal& journal, con
 
 void print_budgets(const BenchOptions& options) {
   const Journal journal = read_journal(options.journal);
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const std::filesystem::path cache = scratch / "cache";
   write_bench_cache(options, cache);
   ResidencyOptions logging;

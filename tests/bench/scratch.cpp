@@ -11,13 +11,13 @@
 
 namespace relook {
 
-Scratch::Scratch() {
+ScratchFolder::ScratchFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "relook_bench-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw IoError(name, "cannot create the folder");
   path_ = name;
 }
 
-Scratch::~Scratch() {
+ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }

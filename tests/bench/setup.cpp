@@ -2,29 +2,30 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 
 #include "base/error.h"
 
 namespace relook {
 
-BenchOptions parse_options(int count, char** arguments) {
+BenchOptions parse_options(const std::vector<std::string>& words, std::uint32_t width, std::uint32_t height) {
   BenchOptions options;
-  std::vector<char*> words;
-  for (int i = 1; i < count; ++i) {
-    if (std::string_view(arguments[i]) != "--camera")
-      words.push_back(arguments[i]);
-    else if (++i < count)
-      options.camera = arguments[i];
+  options.width = width;
+  options.height = height;
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] != "--camera")
+      places.push_back(words[i]);
+    else if (++i < words.size())
+      options.camera = words[i];
     else
       throw UsageError("--camera: which one?");
   }
-  if (words.size() < 2) throw UsageError("SCENE and JOURNAL are missing; tests/bench/README.md has all commands");
-  options.scene = words[0];
-  options.journal = words[1];
-  if (words.size() > 2 && std::sscanf(words[2], "%ux%u", &options.width, &options.height) != 2)
+  if (places.size() < 2) throw UsageError("SCENE and JOURNAL are missing; tests/bench/README.md has all commands");
+  options.scene = places[0];
+  options.journal = places[1];
+  if (places.size() > 2 && std::sscanf(places[2].c_str(), "%ux%u", &options.width, &options.height) != 2)
     throw UsageError("the resolution is WIDTHxHEIGHT");
-  if (words.size() > 3) options.view.samples = static_cast<std::uint32_t>(std::strtoul(words[3], nullptr, 10));
+  if (places.size() > 3) options.view.samples = static_cast<std::uint32_t>(std::stoul(places[3]));
   return options;
 }
 

@@ -24,8 +24,10 @@ struct BenchOptions {
   [[nodiscard]] double samples() const { return pixels() * view.samples; }
 };
 
-/// SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]] [--camera CAMERA]. Throws UsageError.
-[[nodiscard]] BenchOptions parse_options(int count, char** arguments);
+/// `words`: SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]] [--camera CAMERA]; `width`, `height`: without a size. Throws
+/// UsageError.
+[[nodiscard]] BenchOptions parse_options(const std::vector<std::string>& words, std::uint32_t width = 1920,
+                                         std::uint32_t height = 1080);
 
 [[nodiscard]] LookDocument import_look(const BenchOptions& options);
 /// What the program is told of a scene beside its file.
