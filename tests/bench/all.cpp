@@ -7,6 +7,7 @@
 #include "growth.h"
 #include "scene_measures.h"
 #include "scratch.h"
+#include "tunnels.h"
 
 namespace relook {
 namespace {
@@ -34,11 +35,9 @@ Words parse(const std::vector<std::string>& words) {
 }
 
 BenchOptions options_of(const std::string& scene, const std::string& journal, const Words& words, Record& record) {
-  std::vector<std::string> all{"all", scene, journal};
+  std::vector<std::string> all{scene, journal};
   all.insert(all.end(), words.sizes.begin(), words.sizes.end());
-  std::vector<char*> arguments;
-  for (std::string& word : all) arguments.push_back(word.data());
-  BenchOptions options = parse_options(static_cast<int>(arguments.size()), arguments.data());
+  BenchOptions options = parse_options(all);
   options.record = &record;
   return options;
 }
@@ -56,7 +55,7 @@ void measure(const std::string& name, const BenchOptions& options, bool has_goal
 
 void print_all(const std::vector<std::string>& words) {
   Words parsed = parse(words);
-  const Scratch scratch;
+  const ScratchFolder scratch;
   run_program({"python3", (kSource / "scenes/generate.py").string(), "garden", (scratch / "garden").string()});
   const std::string garden = (scratch / "garden" / "garden.gltf").string();
   const std::string spheres = (kSource / "scenes/spheres/spheres.gltf").string();
@@ -70,6 +69,7 @@ void print_all(const std::vector<std::string>& words) {
   if (!has_size) parsed.sizes.clear();
   const BenchOptions options = options_of(garden, garden_journal, parsed, record);
   if (!has_size) measure("garden", options, true);
+  print_tunnels(options);
   record.begin("garden, growth", true);
   print_growth(options);
   record.print_goals();

@@ -1,4 +1,4 @@
-// What replays cost when not everything is kept (paper 4; Table 3's columns): shares of ray trees, budgets, policies.
+// What replays cost when not everything is kept (paper 4.3): budgets and policies.
 #pragma once
 #include "setup.h"
 

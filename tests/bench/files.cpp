@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "base/hash.h"
-#include "cache/cache.h"
-#include "engine/cached_image.h"
+#include "bench_cache.h"
 #include "engine/frame_file.h"
 #include "engine/render.h"
-#include "scratch.h"
 
 namespace relook {
 namespace {
@@ -48,8 +45,8 @@ EditTime edit_with_file(Replayer& replayer, FrameEncoder& encoder, const Edit& e
 }
 
 /// From the start of the process to its end: the cache read, the frame before and after the edit written, and previews.
-double start_to_frame(const BenchOptions& options, const Image& image, const JournalStep& step, const Scratch& folder) {
-  write_cache(folder / "cache", cache_content(load_scene(options), image, hash128(bytes_of(options.scene))));
+double start_to_frame(const BenchOptions& options, const JournalStep& step, const ScratchFolder& folder) {
+  write_bench_cache(options, folder / "cache");
   Json edit = Json::array();
   for (const PatchOperation& operation : step.edit)
     edit.push_back({{"op", "replace"}, {"path", operation.path}, {"value", operation.value}});
@@ -71,7 +68,7 @@ double start_to_frame(const BenchOptions& options, const Image& image, const Jou
 }  // namespace
 
 void print_files(const BenchOptions& options, const Image& image, const Journal& journal) {
-  const Scratch folder;
+  const ScratchFolder folder;
   Replayer replayer(load_scene(options), image);
   const double full_seconds = full_with_file(replayer.state(), options.view, folder / "full.exr");
   std::printf("\n%-46s %10.3f s\n", "full render and its EXR frame", full_seconds);
@@ -97,7 +94,7 @@ void print_files(const BenchOptions& options, const Image& image, const Journal&
                  Goal{100});
   }
   if (first == nullptr) return;
-  const double seconds = start_to_frame(options, image, *first, folder);
+  const double seconds = start_to_frame(options, *first, folder);
   std::printf("%-46s %10.3f s (to reach: 0.5)\n", "start to first edited frame, whole process", seconds);
   options.note("With files", first->name, "start to first edited frame", seconds, "s", "", Goal{0.5, true});
 }

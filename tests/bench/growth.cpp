@@ -103,7 +103,7 @@ void print_size(const BenchOptions& options, const Journal& journal, Growth& gro
 
 }  // namespace
 
-void print_growth(BenchOptions options) {
+void print_growth(const BenchOptions& options) {
   const Journal journal = read_journal(options.journal);
   std::printf(
       "relook_bench growth: %s, %zu thread(s); fastest of %d. To reach: ns a sample constant within 20 %%, the "
@@ -112,9 +112,10 @@ void print_growth(BenchOptions options) {
   std::printf("  %-30s %10s %10s %10s\n", "edit", "affected", "ms", "ns/sample");
   Growth growth;
   for (const Size& size : kSizes) {
-    options.width = size.width;
-    options.height = size.height;
-    print_size(options, journal, growth);
+    BenchOptions sized = options;
+    sized.width = size.width;
+    sized.height = size.height;
+    print_size(sized, journal, growth);
   }
   for (const auto& [name, prices] : growth)
     options.note("Growth", name, "dearest / cheapest sample",

@@ -1,31 +1,50 @@
-// relook_bench SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]]: the measures of the project on one scene, as ratios within one
-// run, beside the paper's figures (Brière & Poulin 1996, Tables 2 and 3, where a full render takes 640 s).
-// relook_bench all [WIDTHxHEIGHT [SAMPLES]] [--json FILE] [--html FILE]: these on spheres and garden, and their growth.
-// relook_bench growth SCENE JOURNAL: the price of edits at growing numbers of samples.
-// relook_bench budget SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]]: what edits cost when not everything is kept.
-// relook_bench peaks CACHE JOURNAL: the memory of whole replays under five limits.
+// The measures of the project, as ratios within one run, beside the paper's figures (Brière & Poulin 1996, Tables 2 and
+// 3, where a full render takes 640 s). README.md beside this file has all commands.
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <string_view>
 
 #include "all.h"
+#include "base/error.h"
 #include "budget.h"
 #include "growth.h"
 #include "peaks.h"
 #include "scene_measures.h"
+#include "tunnels.h"
+
+namespace relook {
+namespace {
+
+struct Measure {
+  std::string_view name;
+  void (*print)(const BenchOptions&);
+  std::uint32_t width = 1920, height = 1080;  // unless the command line has others
+};
+constexpr std::array<Measure, 4> kMeasures{Measure{"tables", print_tables, 256, 256},
+                                           {"tunnels", print_tunnels},
+                                           {"growth", print_growth},
+                                           {"budget", print_budgets}};
+
+void run(int count, char** arguments) {
+  const std::string_view name = count > 1 ? arguments[1] : "";
+  if (name == "all") return print_all({arguments + 2, arguments + count});
+  if (name == "peaks") {
+    if (count != 4) throw UsageError("relook_bench peaks CACHE JOURNAL");
+    return print_peaks(arguments[2], arguments[3]);
+  }
+  for (const Measure& measure : kMeasures)
+    if (name == measure.name)
+      return measure.print(parse_options({arguments + 2, arguments + count}, measure.width, measure.height));
+  print_scene(parse_options({arguments + 1, arguments + count}));
+}
+
+}  // namespace
+}  // namespace relook
 
 int main(int count, char** arguments) {
   try {
-    if (count > 1 && std::string_view(arguments[1]) == "all")
-      relook::print_all({arguments + 2, arguments + count});
-    else if (count > 1 && std::string_view(arguments[1]) == "growth")
-      relook::print_growth(relook::parse_options(count - 1, arguments + 1));
-    else if (count > 1 && std::string_view(arguments[1]) == "budget")
-      relook::print_budgets(relook::parse_options(count - 1, arguments + 1));
-    else if (count == 4 && std::string_view(arguments[1]) == "peaks")
-      relook::print_peaks(arguments[2], arguments[3]);
-    else
-      relook::print_scene(relook::parse_options(count, arguments));
+    relook::run(count, arguments);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "relook_bench: %s\n", error.what());

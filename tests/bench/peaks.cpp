@@ -61,7 +61,7 @@ class Replays {
   [[nodiscard]] std::string folder(const char* name) const { return (scratch_ / name).string(); }
 
   std::string cache_, journal_;
-  Scratch scratch_;
+  ScratchFolder scratch_;
 };
 
 double megabytes_of(const Replays::Run& run) { return static_cast<double>(run.program.peak_bytes) / (1 << 20); }

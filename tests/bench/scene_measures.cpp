@@ -3,44 +3,60 @@
 #include <cstdio>
 
 #include "base/parallel.h"
+#include "engine/render.h"
 #include "files.h"
+#include "paper.h"
 #include "render_measures.h"
 #include "table2.h"
-#include "table3_colors.h"
 #include "table3_looks.h"
 #include "table3_moves.h"
 
 namespace relook {
 namespace {
 
-void print_sizes(const Image& image, const Resident& resident, const BenchOptions& options) {
-  std::printf("%-46s %10zu, %.1f MB\n", "ray paths (paper, 256x256: 5,300)", image.paths.size(),
-              static_cast<double>(resident.ray_paths) * 1e-6);
-  std::printf("%-46s %10.1f bytes (paper: 56 to 84; to reach: 32)\n", "ray paths and ray trees, a sample",
-              static_cast<double>(resident.ray_paths + resident.ray_trees) / options.samples());
-  options.note("Table 2", "ray paths and ray trees", "bytes a sample",
-               static_cast<double>(resident.ray_paths + resident.ray_trees) / options.samples(), "", "56 to 84",
-               Goal{32, true});
+void print_title(const BenchOptions& options, const char* what) {
+  std::printf("relook_bench%s: %s at %ux%u, %u sample(s), %zu thread(s)\n", what, options.scene.c_str(), options.width,
+              options.height, options.view.samples, thread_count());
+}
+
+/// Tables 2 and 3. `has_details`: with what bounds the times of Table 3.
+void print_paper_tables(const BenchOptions& options, const Image& image, const Journal& journal, bool has_details) {
+  print_table2(options, image, &journal);
+  std::fflush(stdout);
+  FullRender full(options);
+  const LookTable looks = time_looks(options, image, journal, full);
+  const MoveTable moves = time_moves(options, image, journal, full);
+  std::printf("\nfull render of Table 3 (fastest of those timed between its rows): %.1f ms; the paper's: %.0f s\n",
+              full.seconds() * 1e3, paper::kFullSeconds);
+  print_looks(options, looks, full.seconds());
+  print_moves(options, moves, full.seconds());
+  if (!has_details) return;
+  print_look_details(options, looks, full.seconds());
+  print_move_details(options, moves, full.seconds());
 }
 
 }  // namespace
 
+void print_tables(const BenchOptions& options) {
+  print_title(options, " tables");
+  const SceneState state = load_scene(options);
+  RenderStats stats;
+  const Image image = preprocess(state.scene(), options.view, stats);
+  print_paper_tables(options, image, read_journal(options.journal), false);
+}
+
 void print_scene(const BenchOptions& options) {
-  SceneState state = load_scene(options);
-  std::printf("relook_bench: %s at %ux%u, %u sample(s), %zu thread(s), %zu objects\n", options.scene.c_str(),
-              options.width, options.height, options.view.samples, thread_count(), state.scene().objects.size());
+  const SceneState state = load_scene(options);
+  print_title(options, "");
   Image image;
   const RenderTimes times = print_render(options, state, image);
   print_texture_price(state, times);
-  Replayer replayer(std::move(state), image);
-  print_sizes(image, replayer.resident(), options);
-  print_table2(options, replayer.state().scene(), image, replayer.resident(), times);
-  if (options.journal == "-") return;
+  if (options.journal == "-") {
+    print_table2(options, image, nullptr);
+    return;
+  }
   const Journal journal = read_journal(options.journal);
-  print_steps(options, replayer, journal, times.full_seconds);
-  print_moves(options, image, journal, times.full_seconds);
-  print_colors(options, image, journal, times.full_seconds);
-  print_looks(options, image, journal, times.full_seconds);
+  print_paper_tables(options, image, journal, true);
   print_files(options, image, journal);
 }
 

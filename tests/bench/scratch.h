@@ -8,12 +8,12 @@
 namespace relook {
 
 /// A folder that is gone in the end.
-class Scratch {
+class ScratchFolder {
  public:
-  Scratch();
-  ~Scratch();
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
   [[nodiscard]] std::filesystem::path operator/(const char* name) const { return path_ / name; }
 
  private:
@@ -29,7 +29,8 @@ struct ProgramRun {
 /// Runs a program (searched for in PATH) and waits. `errors`: a file for its standard error. Throws IoError if it
 /// cannot be started.
 [[nodiscard]] ProgramRun try_program(std::vector<std::string> command, const std::filesystem::path& errors);
-/// Runs a program (searched for in PATH) and waits. Throws IoError unless it exits with 0.
-void run_program(std::vector<std::string> command);
+/// Runs a program (searched for in PATH) and waits. `output`: a file for its standard output; "": it stays this one's.
+/// Throws IoError unless it exits with 0.
+void run_program(std::vector<std::string> command, const std::filesystem::path& output = {});
 
 }  // namespace relook

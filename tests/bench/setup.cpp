@@ -2,23 +2,30 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 
 #include "base/error.h"
 
 namespace relook {
 
-BenchOptions parse_options(int count, char** arguments) {
-  if (count < 3)
-    throw UsageError(
-        "relook_bench [growth|budget] SCENE JOURNAL|- [WIDTHxHEIGHT [SAMPLES]], relook_bench all ..., or relook_bench "
-        "peaks CACHE JOURNAL");
+BenchOptions parse_options(const std::vector<std::string>& words, std::uint32_t width, std::uint32_t height) {
   BenchOptions options;
-  options.scene = arguments[1];
-  options.journal = arguments[2];
-  if (count > 3 && std::sscanf(arguments[3], "%ux%u", &options.width, &options.height) != 2)
+  options.width = width;
+  options.height = height;
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] != "--camera")
+      places.push_back(words[i]);
+    else if (++i < words.size())
+      options.camera = words[i];
+    else
+      throw UsageError("--camera: which one?");
+  }
+  if (places.size() < 2) throw UsageError("SCENE and JOURNAL are missing; tests/bench/README.md has all commands");
+  options.scene = places[0];
+  options.journal = places[1];
+  if (places.size() > 2 && std::sscanf(places[2].c_str(), "%ux%u", &options.width, &options.height) != 2)
     throw UsageError("the resolution is WIDTHxHEIGHT");
-  if (count > 4) options.view.samples = static_cast<std::uint32_t>(std::strtoul(arguments[4], nullptr, 10));
+  if (places.size() > 3) options.view.samples = static_cast<std::uint32_t>(std::stoul(places[3]));
   return options;
 }
 
@@ -29,11 +36,18 @@ void BenchOptions::note(std::string table, std::string row, std::string column, 
       {"", std::move(table), std::move(row), std::move(column), value, std::move(unit), std::move(paper), goal});
 }
 
+LookDocument import_look(const BenchOptions& options) { return make_look_document(import_gltf(options.scene)); }
+
+SceneChoices scene_choices(const BenchOptions& options, const LookDocument& document) {
+  const bool needs_camera = options.camera.empty() && document.cameras.empty();
+  return {needs_camera ? "auto" : options.camera, document.look.at("lights").empty()};
+}
+
 SceneState load_scene(const BenchOptions& options) {
-  LookDocument document = make_look_document(import_gltf(options.scene));
-  const std::string choice = document.cameras.empty() ? "auto" : "";
-  const Camera camera = choose_camera(document, choice, options.width, options.height);
-  if (document.look.at("lights").empty()) add_auto_lights(document, camera);
+  LookDocument document = import_look(options);
+  const SceneChoices choices = scene_choices(options, document);
+  const Camera camera = choose_camera(document, choices.camera, options.width, options.height);
+  if (choices.has_auto_lights) add_auto_lights(document, camera);
   return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
 }
 

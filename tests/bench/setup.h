@@ -13,6 +13,7 @@ namespace relook {
 
 struct BenchOptions {
   std::string scene, journal;  // journal "-": none
+  std::string camera;          // as --camera of the program names it; "": the scene's first one, or one that frames all
   std::uint32_t width = 1920, height = 1080;
   ViewOptions view;
   Record* record = nullptr;  // gets what note() is told, if there is one
@@ -23,8 +24,18 @@ struct BenchOptions {
   [[nodiscard]] double samples() const { return pixels() * view.samples; }
 };
 
-/// SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]]. Throws UsageError.
-[[nodiscard]] BenchOptions parse_options(int count, char** arguments);
+/// `words`: SCENE JOURNAL [WIDTHxHEIGHT [SAMPLES]] [--camera CAMERA]; `width`, `height`: without a size. Throws
+/// UsageError.
+[[nodiscard]] BenchOptions parse_options(const std::vector<std::string>& words, std::uint32_t width = 1920,
+                                         std::uint32_t height = 1080);
+
+[[nodiscard]] LookDocument import_look(const BenchOptions& options);
+/// What the program is told of a scene beside its file.
+struct SceneChoices {
+  std::string camera;            // "": the scene's first one
+  bool has_auto_lights = false;  // there are none in the scene
+};
+[[nodiscard]] SceneChoices scene_choices(const BenchOptions& options, const LookDocument& document);
 [[nodiscard]] SceneState load_scene(const BenchOptions& options);
 
 /// The time of one call, and of the fastest of some calls, in seconds.
