@@ -65,12 +65,7 @@ std::vector<Condition> conditions_of(const Arguments& arguments) {
       return {{"--float", is_png, "a PNG has no floats"}, {"--aovs", is_png, "a PNG has no layers"}};
     }
     case Verb::replay: {
-      const bool is_unlimited = !arguments.structures.memory_bytes;
-      constexpr const char* kNothingLeaves = "nothing leaves memory without --memory";
-      return {{"--policy", is_unlimited, kNothingLeaves},
-              {"--spill", is_unlimited, kNothingLeaves},
-              {"--disk", is_unlimited, kNothingLeaves},
-              {"--baseline", arguments.report == ReportKind::none, "it is for the report, which --report none omits"}};
+      return {{"--baseline", arguments.report == ReportKind::none, "it is for the report, which --report none omits"}};
     }
     case Verb::compare: {
       constexpr const char* kExact = "not with --exact, which works out no PSNR, SSIM and FLIP";

@@ -90,6 +90,7 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash, std::move(tunnels));
   content.storage = storage;
   console.check_interrupt();
+  keep_within(arguments.structures.memory_bytes);
   if (arguments.structures.disk_bytes)
     fit_to_disk(content, *arguments.structures.disk_bytes, tunnel_areas(*loaded.state, content));
   write_cache(arguments.output, content, arguments.overwrite ? OldCache::replace : OldCache::keep);

@@ -197,8 +197,8 @@ void take_structures_of(const Json& manifest, Arguments& arguments, Console& con
                        wanted.most_tunnels == stored.most_tunnels &&
                        (stored.tunnels < 2 || wanted.atoms == stored.atoms);
   if (has_tunnels && wanted.tunnels > 0 && !is_same)
-    console.line(arguments.inputs[0] + ": its tunnels are of other --tunnels, --tunnel-levels, --most-tunnels or " +
-                 "--atoms; others are built when a step needs them");
+    console.warn({arguments.inputs[0] + ": its tunnels are of other --tunnels, --tunnel-levels, --most-tunnels or " +
+                  "--atoms; others are built when a step needs them"});
 }
 
 }  // namespace

@@ -80,9 +80,6 @@ TEST_F(Options, without_effect_beside_others_are_refused) {
   const std::vector<Row> rows{
       {{"render", "SCENE", "-o", png, "--float"}, "--float", "PNG"},
       {{"render", "SCENE", "-o", png, "--aovs"}, "--aovs", "PNG"},
-      {{"replay", "C", "J", "-o", "R", "--policy", "lru"}, "--policy", "--memory"},
-      {{"replay", "C", "J", "-o", "R", "--spill", at("")}, "--spill", "--memory"},
-      {{"replay", "C", "J", "-o", "R", "--disk", "2G"}, "--disk", "--memory"},
       {{"replay", "C", "J", "-o", "R", "--report", "none", "--baseline"}, "--baseline", "--report none"},
       {{"compare", "C", "R", "--exact", "--peak", "2"}, "--peak", "--exact"},
       {{"compare", "C", "R", "--exact", "--failflip", "0.1"}, "--failflip", "--exact"},
@@ -99,7 +96,7 @@ TEST_F(Options, of_structures_that_a_replay_does_not_name_are_those_of_the_cache
             0);
   std::ofstream(at("j.json")) << R"({"relook": "journal/1", "steps": []})";
   const auto options_of = [&](std::vector<std::string> options) {
-    std::vector<std::string> words{"replay", at("C"), at("j.json"), "-o", at("R"), "--overwrite", "--quiet"};
+    std::vector<std::string> words{"replay", at("C"), at("j.json"), "-o", at("R"), "--fresh", "--overwrite", "--quiet"};
     words.insert(words.end(), options.begin(), options.end());
     EXPECT_EQ(relook(words).exit_code, 0);
     return parse_json(text_of(read_file(folder_ / "R/report.json")), "report.json")["options"];

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/hash.h"
+#include "edit/apply.h"
 #include "cache/manifest.h"
 #include "cache/tunnel_parts.h"
 #include "engine/cached_tunnels.h"
@@ -88,6 +89,10 @@ class StoredTunnelsTest : public testing::Test {
     EXPECT_EQ(tunnels ? tunnels->take_faults().size() : 0, expects_faults) << what;
   }
 
+  [[nodiscard]] std::shared_ptr<const Manifest> manifest() const {
+    return std::make_shared<const Manifest>(load_manifest(cache_));
+  }
+
   ScratchFolder folder_{"stored_tunnels"};
   std::filesystem::path cache_ = folder_ / "c";
 };
@@ -101,10 +106,11 @@ TEST_F(StoredTunnelsTest, EqualThoseThatAreBuiltValueByValue) {
         const ViewOptions view{samples, 5, 1};
         write(state, view, shape);
         const Replayer replayer(compiled_again(state), preprocessed(state.scene(), view), shape);
-        EXPECT_EQ(StoredTunnels::of_cache(cache_, 1) != nullptr, replayer.regions().may_have_tunnels(replayer.image()));
-        if (!replayer.regions().may_have_tunnels(replayer.image())) continue;
+        const auto tunnels = StoredTunnels::of_cache(cache_, manifest(), replayer.image().paths);
+        EXPECT_EQ(tunnels != nullptr, replayer.regions().may_have_tunnels(replayer.image()));
+        if (!tunnels) continue;
         const ImageRegions built = fresh_regions(replayer);
-        StoredTunnels stored(cache_, load_manifest(cache_), replayer.image().paths.size());
+        StoredTunnels& stored = *tunnels;
         for (std::size_t tile = 0; tile < replayer.image().trees.size(); ++tile) {
           EXPECT_TRUE(stored.around(tile) == built.around(tile)) << tile;
           EXPECT_TRUE(stored.read(tile) == built.tunnels(tile)) << tile;
@@ -209,6 +215,68 @@ TEST_F(StoredTunnelsTest, ThatAreWrongAndHaveTheirHashesAreFoundByCheck) {
   const ProgramResult checked = run_program({RELOOK_PROGRAM, "check", cache_.string()});
   EXPECT_EQ(checked.exit_code, 5) << checked.output;
   EXPECT_NE(checked.output.find("tunnels of 1 tile"), std::string::npos) << checked.output;
+}
+
+/// Between the reading of the trees and the first use of tunnels another cache may take the place of the first.
+TEST_F(StoredTunnelsTest, OfACacheThatHasTakenThePlaceOfTheOneReadAreNotUsed) {
+  const SceneState state = test_scene(TestScene::study, 90, 70);
+  write(state, {1, 5}, {});
+  CacheContent content;
+  ASSERT_EQ(read_cache(cache_, content).fault, CacheFault::none);
+  SceneState other = test_scene(TestScene::study, 90, 70);
+  apply_edit(other, edit_of_text(kMove), "moved", ".");
+  write(other, {1, 5}, {});
+  const auto tunnels = StoredTunnels::of_cache(cache_, content.manifest, content.paths);
+  for (std::size_t tile = 0; tile < content.trees.size(); ++tile) {
+    EXPECT_FALSE(tunnels->around(tile).has_value());
+    EXPECT_FALSE(tunnels->read(tile).has_value());
+  }
+  EXPECT_EQ(tunnels->take_faults().size(), 1U);
+}
+
+TEST_F(StoredTunnelsTest, OfMoreSectionsThanTheTreesCanHaveAreRefusedBeforeTheyAreRead) {
+  const SceneState state = test_scene(TestScene::study, 90, 70);
+  CacheContent content = content_with_tunnels(state, {1, 5}, {});
+  TunnelSection section = content.around_tiles[0].front();
+  for (History history = 1U << 20; history < (1U << 20) + 2000000; ++history) {
+    section.history = history;
+    content.around_tiles[0].push_back(section);
+  }
+  write_cache(cache_, content);
+  OpenedCache opened = opened_cache(cache_);
+  EXPECT_FALSE(opened.tunnels->around(0).has_value());
+  const std::vector<CacheAnswer> faults = opened.tunnels->take_faults();
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].detail, "more sections than the ray trees can have");
+}
+
+TEST_F(StoredTunnelsTest, CountAsRebuiltOnlyWhereTheyHadBeen) {
+  const auto counters_of = [&](const std::vector<const char*>& edits, const RegionOptions& shape) {
+    OpenedCache opened = opened_cache(cache_);
+    Replayer replayer(std::move(*opened.state), std::move(opened.image), shape, nullptr, opened.tunnels);
+    Counters sum;
+    for (const char* edit : edits) sum += replayer.step(edit_of_text(edit), "counted", ".").counters;
+    return sum;
+  };
+  const SceneState state = test_scene(TestScene::study, 256, 256);  // 16 tiles, 5 regions above
+  const RegionOptions outlines{.tunnels = 2, .most_tunnels = 21};   // of each tile just the one around all of it
+  write(state, {1, 5}, outlines);
+  Counters counters = counters_of({kMove}, outlines);
+  EXPECT_GT(counters.tunnels_read, 0U);
+  EXPECT_EQ(counters.rebuilt.tunnels, 0U);
+
+  CacheContent content = content_with_tunnels(state, {1, 5}, {});
+  for (TileTunnels& tunnels : content.tunnels) tunnels = TileTunnels();  // left out
+  write_cache(cache_, content);
+  counters = counters_of({kMove, kMoveOther}, {});
+  EXPECT_EQ(counters.tunnels_read, 0U);
+  EXPECT_EQ(counters.rebuilt.tunnels, 0U);
+
+  write(state, {1, 5}, {});
+  const std::filesystem::path file = tunnel_files(cache_).front();
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1);  // of the last section alone
+  const std::uint64_t moved = counters_of({kMove, kMoveOther}, {}).rebuilt.tunnels;
+  EXPECT_EQ(counters_of({kOptics, kMove, kMoveOther}, {}).rebuilt.tunnels, moved) << "whatever comes first";
 }
 
 TEST_F(StoredTunnelsTest, OfAnotherShapeAreNotUsed) {

@@ -37,14 +37,19 @@ struct Finding {
   bool is_lost = false;  // missing, or not the bytes that were written
 };
 
+/// The most that is believed of paths that are lost, for the tunnels around them.
+constexpr std::size_t kWordsOfLostPath = 1024;
+
 void decode_tunnels(std::size_t group, BytesView bytes, Reading& reading) {
   CacheContent& content = reading.content;
+  PathBounds paths = bounds_of(content.paths);
+  if (paths.count == 0) paths = {reading.manifest.pieces.ray_paths, kWordsOfLostPath};
   const TunnelReader tunnels(ByteSource(bytes), reading.manifest.identity, content.storage, content.camera,
-                             content.samples, group);
+                             content.samples, group, paths);
   const TileGroup tiles = cache_group(content.camera, content.samples, group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
     TileTunnels of_tile;
-    if (tunnels.has(tile)) of_tile = tunnels.tunnels(tile, reading.manifest.pieces.ray_paths);
+    if (tunnels.has(tile)) of_tile = tunnels.tunnels(tile);
     if (reading.users.tunnels == TunnelReading::check) continue;
     content.around_tiles[tile] = tunnels.around(tile);
     content.tunnels[tile] = std::move(of_tile);
@@ -187,6 +192,7 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
   }
   const Manifest& manifest = reading.manifest;
   CacheContent& content = reading.content;
+  content.manifest = std::make_shared<const Manifest>(manifest);
   content.storage = manifest.storage;
   content.pieces = manifest.pieces;
   content.camera = manifest.camera;

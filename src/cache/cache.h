@@ -47,6 +47,8 @@ struct CacheContent;
 /// Counts them.
 [[nodiscard]] PieceNumbers count_pieces(const CacheContent& content);
 
+struct Manifest;
+
 /// Everything a replay needs. Plain data; the engine turns it into a SceneState and an Image and back.
 struct CacheContent {
   LookDocument document;  // with meshes and encoded images
@@ -63,6 +65,7 @@ struct CacheContent {
   std::vector<TileTunnels> tunnels;              // [tiles] an empty one: left out; with `around_tiles`
   StorageOptions storage;
   PieceNumbers pieces;
+  std::shared_ptr<const Manifest> manifest;  // that it has been read by; null: it has not been read
 };
 
 /// Why a directory cannot be used as a cache. Each has one sentence.

@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "cache/manifest.h"
 
 namespace relook {
 namespace {
@@ -153,7 +154,8 @@ BytesView ByteSource::bytes(std::uint64_t offset, std::uint64_t count, Bytes& co
   const auto& path = std::get<std::filesystem::path>(source_);
   copy.resize(count);
   const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
-  if (file < 0) throw CacheDamage(CacheFault::damaged, std::string("cannot open: ") + std::strerror(errno));
+  if (file < 0 && is_refusal(errno)) throw CacheDamage(CacheFault::unreadable, refusal_text(errno));
+  if (file < 0) throw CacheDamage(CacheFault::damaged, "the file is missing");
   std::uint64_t done = 0;
   int error = 0;
   while (done < count) {

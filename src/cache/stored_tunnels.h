@@ -14,19 +14,28 @@ namespace relook {
 class TunnelReader;
 struct Manifest;
 
+/// What a path table allows of the tunnels around trees with its paths.
+struct PathBounds {
+  std::size_t count = 0;       // of its paths
+  std::size_t most_words = 0;  // of a path, and so at least its nodes
+};
+[[nodiscard]] PathBounds bounds_of(const PathTable& paths);
+
 class StoredTunnels {
  public:
-  /// Null if the cache has none. `path_count`: of its path table.
+  /// Null if the cache has none. `manifest`, `paths`: by which, and which, the image has been read.
   [[nodiscard]] static std::shared_ptr<StoredTunnels> of_cache(const std::filesystem::path& path,
-                                                               std::size_t path_count);
-  StoredTunnels(std::filesystem::path path, Manifest manifest, std::size_t path_count);
+                                                               std::shared_ptr<const Manifest> manifest,
+                                                               const PathTable& paths);
+  StoredTunnels(std::filesystem::path path, std::shared_ptr<const Manifest> manifest, const PathBounds& paths);
   ~StoredTunnels();
 
   [[nodiscard]] const StorageOptions& shape() const;
+  /// The next three throw IoError where a file may not be opened.
   /// Around all tunnels of a tile; none if they cannot be read.
   [[nodiscard]] std::optional<Sections> around(std::size_t tile);
-  /// Bytes of a tile's tunnels, about; 0: they are not stored.
-  [[nodiscard]] std::uint64_t bytes(std::size_t tile);
+  /// Bytes of a tile's tunnels, about; none: they are not stored.
+  [[nodiscard]] std::optional<std::uint64_t> bytes(std::size_t tile);
   [[nodiscard]] std::optional<TileTunnels> read(std::size_t tile);
   /// What could not be read since the last call, one a file.
   [[nodiscard]] std::vector<CacheAnswer> take_faults();
@@ -43,8 +52,8 @@ class StoredTunnels {
   void note_fault(Group& group, const CacheAnswer& answer);
 
   std::filesystem::path path_;
-  std::unique_ptr<Manifest> manifest_;
-  std::size_t path_count_;
+  std::shared_ptr<const Manifest> manifest_;
+  PathBounds paths_;
   std::vector<Group> groups_;
   std::mutex mutex_;  // of the faults
   std::vector<CacheAnswer> faults_;

@@ -52,9 +52,12 @@ Bytes encode_tunnels(const CacheContent& content, std::size_t group, const Cache
 }
 
 TunnelReader::TunnelReader(const ByteSource& file, const CacheIdentity& identity, const StorageOptions& shape,
-                           const Camera& camera, std::uint32_t samples, std::size_t group)
+                           const Camera& camera, std::uint32_t samples, std::size_t group, const PathBounds& paths)
     : reader_(file, identity),
       of_region_(shape.tunnels.of_region),
+      camera_(camera),
+      samples_(samples),
+      paths_(paths),
       levels_(cell_levels(shape.tunnels, camera.width, camera.height)) {
   const TileGroup tiles = cache_group(camera, samples, group);
   first_ = tiles.first;
@@ -64,7 +67,9 @@ TunnelReader::TunnelReader(const ByteSource& file, const CacheIdentity& identity
   bound_to_ = reader_.text("bound_to");
   kept_ = reader_.column<std::uint8_t>("kept", count);
   const auto counts = reader_.column<std::uint32_t>("around_counts", count);
-  const auto all = reader_.column<TunnelSection>("around", std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
+  const std::uint64_t sections = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  check_sections(sections, count, tiles.first, tiles.last);
+  const auto all = reader_.column<TunnelSection>("around", sections);
   auto next = all.begin();
   for (std::size_t k = 0; k < count; ++k) {
     check_sound(kept_[k] <= 1, "neither yes nor no in section kept");
@@ -75,13 +80,21 @@ TunnelReader::TunnelReader(const ByteSource& file, const CacheIdentity& identity
   }
 }
 
+/// Each section has a node of a sample's tree in it, or is where the primary rays of a tunnel leave.
+void TunnelReader::check_sections(std::uint64_t sections, std::uint64_t tunnels, std::size_t first,
+                                  std::size_t last) const {
+  std::uint64_t samples = 0;
+  for (std::size_t tile = first; tile < last; ++tile) samples += cache_tile_samples(camera_, samples_, tile);
+  check_sound(sections <= samples * paths_.most_words + tunnels, "more sections than the ray trees can have");
+}
+
 std::uint64_t TunnelReader::raw_bytes(std::size_t tile) const {
   const std::size_t k = tile - first_;
   return reader_.raw_bytes(section_name("cells", k)) + reader_.raw_bytes(section_name("tunnels", k)) +
          reader_.raw_bytes(section_name("sections", k));
 }
 
-TileTunnels TunnelReader::tunnels(std::size_t tile, std::size_t path_classes) const {
+TileTunnels TunnelReader::tunnels(std::size_t tile) const {
   const std::size_t k = tile - first_;
   const TileGrid grid(levels_.at(tile));
   TileTunnels::Cells cells;
@@ -93,8 +106,9 @@ TileTunnels TunnelReader::tunnels(std::size_t tile, std::size_t path_classes) co
     cells.section_counts.push_back(tunnel.sections);
     sections += tunnel.sections;
   }
+  check_sections(sections, count, tile, tile + 1);
   cells.sections = reader_.column<TunnelSection>(section_name("sections", k), sections);
-  const std::vector<std::string> broken = broken_invariants(cells, grid, of_region_, path_classes);
+  const std::vector<std::string> broken = broken_invariants(cells, grid, of_region_, paths_.count);
   check_sound(broken.empty(), broken.empty() ? "" : broken.front(), " in section " + section_name("sections", k));
   TileTunnels tunnels = TileTunnels::united(grid, cells, of_region_);
   check_sound(grid.regions() == 0 || relook::around(tunnels) == around(tile),

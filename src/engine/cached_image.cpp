@@ -1,6 +1,7 @@
 #include "engine/cached_image.h"
 
 #include <atomic>
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -71,7 +72,7 @@ std::vector<double> tunnel_areas(const SceneState& state, const CacheContent& co
   double sum = 0;
   for (const Sections& tunnel : content.around_tiles) sum += areas.emplace_back(surface_area(tunnel, lights));
   const double mean = sum / static_cast<double>(areas.size());
-  for (double& area : areas) area = mean > 0 ? area / mean : 1;
+  for (double& area : areas) area = mean > 0 && std::isfinite(area / mean) ? area / mean : 1;
   return areas;
 }
 
@@ -209,7 +210,7 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
     }
   }
   if (is_broken) return {CacheFault::damaged, "trees", "a hit names a triangle that its object does not have"};
-  auto tunnels = StoredTunnels::of_cache(path, image.paths.size());
+  auto tunnels = StoredTunnels::of_cache(path, content.manifest, image.paths);
   opened = {std::move(state),  std::move(image), std::move(content.scene_hash),
             std::move(losses), rebuilt,          std::move(tunnels)};
   return {};

@@ -70,11 +70,12 @@ std::size_t count_wrong_tunnels(const SceneState& state, const Image& image, Sto
   const ClassOf class_of = enclosing.class_of();
   std::atomic<std::size_t> wrong = 0;
   parallel_for(image.trees.size(), [&](std::size_t tile) {
+    const std::optional<Sections> around = stored.around(tile);
+    if (!around) return;  // damaged and said elsewhere
     const std::optional<TileTunnels> tunnels = stored.read(tile);
-    if (!tunnels) return;  // left out, or damaged and said elsewhere
     TreeEncloser trees(image, grow, tile, storage.tunnels.of_region, class_of);
-    const TileGrid& grid = tunnels->grid();
-    bool is_right = grid.regions() > 0 || trees.around() == stored.around(tile);
+    const TileGrid grid = tunnels ? tunnels->grid() : TileGrid(kTileLevel + 1);
+    bool is_right = grid.regions() > 0 || trees.around() == *around;  // otherwise it follows from the cells
     for (auto cell = static_cast<std::uint32_t>(tile % kCellStride); is_right && cell < grid.cells(); cell += kCellStride)
       is_right = are_tunnels(trees.of(grid.square_of(cell)), *tunnels, cell);
     wrong += is_right ? 0 : 1;

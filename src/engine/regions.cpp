@@ -1,6 +1,7 @@
 #include "engine/regions.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -54,10 +55,11 @@ std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const G
     if (take_stored(tile)) return;
     is_lost[tile] = stored_ && !stale_[tile].all() ? 1 : 0;
     build(image, grow, tile, class_of);
+    if (stored_) stale_[tile].reset();
   });
   measure_areas();
   parallel_for(stale_.size(), [&](std::size_t tile) {
-    if (stale_[tile].any()) static_cast<void>(update(image, grow, tile, stale_[tile], class_of));
+    if (stale_[tile].any() && update(image, grow, tile, stale_[tile], class_of)) is_lost[tile] = 1;
   });
   stale_.clear();
   const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
@@ -74,16 +76,19 @@ bool ImageRegions::take_stored(std::size_t tile) {
   std::optional<Sections> around = stored_->around(tile);
   if (!around) return false;
   around_[tile] = std::move(*around);
-  const std::uint64_t bytes = stored_->bytes(tile);
+  const std::optional<std::uint64_t> bytes = stored_->bytes(tile);
+  if (!bytes) return true;  // left out
+  was_there_[tile] = 1;
   // About one section a hit, in leaves and above.
-  const double seconds = kTunnelSeconds * static_cast<double>(bytes) / sizeof(TunnelSection);
-  if (bytes > 0) residency_->set_stored(PieceKind::tunnels, tile, bytes, seconds, 1);
+  const double seconds = kTunnelSeconds * static_cast<double>(*bytes) / sizeof(TunnelSection);
+  residency_->set_stored(PieceKind::tunnels, tile, *bytes, seconds, 1);
   return true;
 }
 
 void ImageRegions::add_pieces(std::size_t tiles) {
   tunnels_.assign(tiles, {});
   around_.assign(tiles, {});
+  was_there_.resize(tiles, 0);
   if (residency_ == nullptr) return;
   PieceHandler handler;
   handler.pack = [this](std::size_t tile) { return tunnels_[tile].packed(); };
@@ -113,6 +118,7 @@ void ImageRegions::build(const Image& image, const GrowScene& grow, std::size_t 
 void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, Sections around, std::optional<double> seconds) {
   around_[tile] = std::move(around);
   tunnels_[tile] = std::move(tunnels);
+  was_there_[tile] = 1;
   if (residency_ != nullptr)
     residency_->set(PieceKind::tunnels, tile, tunnels_[tile].bytes(), seconds, relative_area(tile));
 }
@@ -127,7 +133,8 @@ void ImageRegions::measure_areas() {
 }
 
 double ImageRegions::relative_area(std::size_t tile) const {
-  return mean_area_ > 0 ? surface_area(around_[tile], lights_) / mean_area_ : 1;
+  const double area = mean_area_ > 0 ? surface_area(around_[tile], lights_) / mean_area_ : 1;
+  return std::isfinite(area) ? area : 1;
 }
 
 void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const { enclose(tunnel, around_[tile]); }
@@ -149,11 +156,11 @@ bool ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t
     return false;
   }
   const Residency::Lease tunnels_lease = lease(PieceKind::tunnels, tile);
-  const bool is_missing = tunnels_[tile].empty();
+  const bool is_missing = tunnels_[tile].empty(), was_there = was_there_[tile] != 0;
   const TileGrid grid(cell_levels_[tile]);
   if (is_missing || grid.regions() == 0) {
     build(image, grow, tile, class_of);
-    return is_missing;
+    return is_missing && was_there;
   }
   TreeEncloser trees(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
   TileTunnels rebuilt = tunnels_[tile].rebuilt(changed, options_.tunnels,

@@ -57,7 +57,7 @@ class ImageRegions {
 
   /// After the trees of some leaves of a tile have changed: its groups and, if tunnels have been built, its tunnels,
   /// all of them if they are missing. Tiles may be updated at the same time; update_image() with all of them follows.
-  /// Returns true if the tile's tunnels were missing.
+  /// Returns true if the tile's tunnels had been there before and were missing.
   bool update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
               const ClassOf& class_of);
 
@@ -106,6 +106,7 @@ class ImageRegions {
   TunnelPyramid image_tunnels_;
   std::vector<LightEnd> lights_;  // when tunnels were built
   double mean_area_ = 1;          // of a tile's tunnels then, square metres
+  std::vector<std::uint8_t> was_there_;  // by tile: has it ever had tunnels, or are they stored?
   std::shared_ptr<StoredTunnels> stored_;
   std::vector<Leaves> stale_;  // by tile, before tunnels are built: leaves whose stored ones do not hold any more
 };

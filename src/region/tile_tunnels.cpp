@@ -198,8 +198,7 @@ std::string broken_tunnel(std::span<const TunnelSection> sections) {
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const TunnelSection& section = sections[i];
     if (i > 0 && section.history <= sections[i - 1].history) return "the sections of a tunnel are not in order";
-    if (i > 0 && std::ranges::find(sections.first(i), parent_of(section.history), &TunnelSection::history) ==
-                     sections.begin() + static_cast<std::ptrdiff_t>(i))
+    if (i > 0 && find_section(sections.first(i), parent_of(section.history)) == nullptr)
       return "a section of a tunnel begins nowhere";
     const bool is_sound = is_box(section.points) && is_box(section.leaving) && section.slack >= 0 &&
                           std::isfinite(section.slack) && (i > 0 || !section.points.isEmpty());

@@ -39,10 +39,9 @@ float reach(const Box& from, const Box& target) {
 
 /// Where the rays of a section start.
 Box origins_of(std::span<const TunnelSection> tunnel, const TunnelSection& section) {
-  const History parent = parent_of(section.history);
-  const auto it = std::ranges::find(tunnel, parent, &TunnelSection::history);
-  require(it != tunnel.end(), "a section's parent is in the tunnel");
-  Box origins = it->points;
+  const TunnelSection* const parent = find_section(tunnel, parent_of(section.history));
+  require(parent != nullptr, "a section's parent is in the tunnel");
+  Box origins = parent->points;
   if (is_folded(section.history)) origins.extendBy(section.points);
   return origins;
 }
@@ -132,9 +131,41 @@ void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, st
   }
 }
 
-void enclose(Sections& tunnel, std::span<const TunnelSection> other) {
+const TunnelSection* find_section(std::span<const TunnelSection> tunnel, History history) {
+  const auto it = std::ranges::lower_bound(tunnel, history, {}, &TunnelSection::history);
+  return it != tunnel.end() && it->history == history ? &*it : nullptr;
+}
+
+namespace {
+
+/// Makes room for the histories of another tunnel, in one pass.
+void add_histories(Sections& tunnel, std::span<const TunnelSection> other) {
+  const bool has_all = std::ranges::includes(tunnel, other, {}, &TunnelSection::history, &TunnelSection::history);
+  if (has_all) return;
+  Sections both;
+  both.reserve(std::max(tunnel.size(), other.size()));
+  auto own = tunnel.begin();
   for (const TunnelSection& section : other) {
-    TunnelSection& own = section_of(tunnel, section.history);
+    for (; own != tunnel.end() && own->history < section.history; ++own) both.push_back(*own);
+    if (own != tunnel.end() && own->history == section.history) {
+      both.push_back(*own++);
+    } else {
+      both.emplace_back();
+      both.back().history = section.history;
+    }
+  }
+  both.insert(both.end(), own, tunnel.end());
+  tunnel = std::move(both);
+}
+
+}  // namespace
+
+void enclose(Sections& tunnel, std::span<const TunnelSection> other) {
+  add_histories(tunnel, other);
+  auto at = tunnel.begin();
+  for (const TunnelSection& section : other) {
+    while (at->history != section.history) ++at;
+    TunnelSection& own = *at;
     own.slack = std::max(own.slack, section.slack);
     own.open |= section.open;
     own.blocked |= section.blocked;

@@ -24,6 +24,9 @@ struct TunnelSection {
 /// Sections by history, increasing; the first is kEye's. Empty if no tree is inside.
 using Sections = std::vector<TunnelSection>;
 
+/// The section of a history, or null.
+[[nodiscard]] const TunnelSection* find_section(std::span<const TunnelSection> tunnel, History history);
+
 /// Extends a tunnel by the tree of the sample whose nodes start at `root`. `scratch`: working memory.
 void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, std::uint32_t root,
              std::vector<History>& scratch);
