@@ -96,7 +96,7 @@ std::string percent(double share) {
 void print_curve(const std::filesystem::path& cache, const Journal& journal, const std::vector<Edit>& edits, Tier tier,
                  const Demand& demand) {
   const bool is_disk = tier == Tier::disk;
-  std::printf("\n  ray trees and colours that have left are %s: seconds by memory for pieces, a line for each policy%s\n",
+  std::printf("\n  ray trees and colours that have left are %s: seconds by memory for pieces, by policy%s\n",
               is_disk ? "read back" : "worked out again", is_disk ? "" : " (of this, returns, by the log)");
   std::printf("  %-14s", "policy");
   for (const double share : kBudgets) std::printf(" %17s", percent(share).c_str());
@@ -143,8 +143,8 @@ void print_budgets(const BenchOptions& options) {
       "the journal %d times, there and back: %.2f s without a limit, at most %.0f MB in pieces. Tunnels that have left "
       "come from the cache as long as no edit changed them,\nafterwards as ray trees do. The scene and the cache are "
       "opened before the clock starts\n",
-      options.scene.c_str(), options.width, options.height, options.view.samples, thread_count(), kRounds,
-      free_seconds, static_cast<double>(demand.bytes) * 1e-6);
+      options.scene.c_str(), options.width, options.height, options.view.samples, thread_count(), kRounds, free_seconds,
+      static_cast<double>(demand.bytes) * 1e-6);
   for (const Tier tier : {Tier::disk, Tier::rebuilt}) print_curve(cache, journal, edits, tier, demand);
 }
 

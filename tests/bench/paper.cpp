@@ -5,12 +5,11 @@
 namespace relook::paper {
 namespace {
 
-constexpr std::array<Look, 5> kLooks{
-    Look{"leaves color left tree", 1.5, 1.1, {4.65, 4.45, 1.26, 1.26}, 0.28, 0.23},
-    {"highlight left sphere", 1.5, 1.1, {0.94, 0.66, 0.52, 0.52}, 0.12, 0.09},
-    {"marble color on Beethoven", 1.91, 1.43, {8.36, 7.78, 5.09, 4.91}, 0.35, 0.32},
-    {"ground color", 2.17, 1.59, {7.60, 7.28, 4.50, 2.49}, 0.47, 0.44},
-    {"index of refraction", 1.53, 1.12, {8.55, 8.51, 8.47, 8.47}, 0, 0}};
+constexpr std::array<Look, 5> kLooks{Look{"leaves color left tree", 1.5, 1.1, {4.65, 4.45, 1.26, 1.26}, 0.28, 0.23},
+                                     {"highlight left sphere", 1.5, 1.1, {0.94, 0.66, 0.52, 0.52}, 0.12, 0.09},
+                                     {"marble color on Beethoven", 1.91, 1.43, {8.36, 7.78, 5.09, 4.91}, 0.35, 0.32},
+                                     {"ground color", 2.17, 1.59, {7.60, 7.28, 4.50, 2.49}, 0.47, 0.44},
+                                     {"index of refraction", 1.53, 1.12, {8.55, 8.51, 8.47, 8.47}, 0, 0}};
 
 // In the text at hand the cells below the first geometric row are scattered: they make up one more row (a removing and
 // six times three times) for two names. Here they are those of "flying furthest tree": they are the last ones, and

@@ -36,16 +36,16 @@ void FullRender::again() {
 }
 
 void print_paper_head(const std::string& name, const std::vector<std::string>& columns) {
-  std::printf("%-34.34s", name.c_str());
+  std::printf("%-36.36s", name.c_str());
   for (const std::string& column : columns) std::printf(" %15.15s", column.c_str());
   std::printf("\n");
 }
 
 void print_paper_row(const BenchOptions& options, const std::string& table, const std::string& row,
                      const std::vector<PaperCell>& cells, double full_seconds, bool has_goals) {
-  std::printf("%-34.34s", row.c_str());
+  std::printf("%-36.36s", row.c_str());
   for (const PaperCell& cell : cells) print_value(cell.ours * 1e3, full_seconds / cell.ours);
-  std::printf("\n%34s", "paper, s");
+  std::printf("\n%36s", "paper, s");
   for (const PaperCell& cell : cells) print_value(cell.paper, paper::kFullSeconds / cell.paper);
   std::printf("\n");
   for (const PaperCell& cell : cells) {

@@ -30,7 +30,8 @@ void print_looks(const BenchOptions& options, const LookTable& table, double ful
       "trees are kept tile by tile: what truly was kept is in the heads. Colour tree: there from the start, its\nfirst "
       "edit; compression: later edits\n");
   std::vector<std::string> columns{"SDP, no groups", "SDP, groups", "only ray paths"};
-  for (std::size_t k = 1; k < kLookShares.size(); ++k) columns.push_back(tree_share_head(kLookShares[k], table.kept[k]));
+  for (std::size_t k = 1; k < kLookShares.size(); ++k)
+    columns.push_back(tree_share_head(kLookShares[k], table.kept[k]));
   columns.insert(columns.end(), {"colour tree", "compression"});
   print_paper_head("step", columns);
   for (const LookTimes& times : table.rows) {

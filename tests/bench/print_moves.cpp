@@ -100,12 +100,15 @@ void print_moves(const BenchOptions& options, const MoveTable& table, double ful
     const paper::Move of_paper = paper::move(row.name);
     std::array<paper::ByTunnels, 3> removing{};
     removing[0][0] = of_paper.removing;
-    print_row(options, row, "removing", columns, [](const MoveTimes& times) { return times.removing(); }, removing,
-              full_seconds);
-    print_row(options, row, "rendering", columns, [](const MoveTimes& times) { return times.rendering(); },
-              of_paper.rendering, full_seconds);
-    print_row(options, row, "adding", columns, [](const MoveTimes& times) { return times.release.seconds; },
-              of_paper.adding, full_seconds);
+    print_row(
+        options, row, "removing", columns, [](const MoveTimes& times) { return times.removing(); }, removing,
+        full_seconds);
+    print_row(
+        options, row, "rendering", columns, [](const MoveTimes& times) { return times.rendering(); },
+        of_paper.rendering, full_seconds);
+    print_row(
+        options, row, "adding", columns, [](const MoveTimes& times) { return times.release.seconds; }, of_paper.adding,
+        full_seconds);
   }
 }
 

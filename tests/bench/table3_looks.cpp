@@ -17,7 +17,7 @@ struct Bench {
   std::vector<Replayer> by_ray_trees;
   Replayer compressed;
   SearchTimer search;
-  SceneState state;         // for what parameters are
+  SceneState state;          // for what parameters are
   std::vector<Edit> so_far;  // done on all of them
 
   Bench(const BenchOptions& o, const Image& i, const Journal& j)
@@ -71,8 +71,8 @@ struct Bench {
     times.segments_again =
         static_cast<double>(counters.ray_updates + counters.shadow_updates) / static_cast<double>(replayer.segments());
     static_cast<void>(timed(replayer, StepKind::step, edit, journal));
-    times.work = time_pixel_work(replayer.state().scene(), image.view,
-                                 step.result.changed_pixels.indices(image.frame.width));
+    times.work =
+        time_pixel_work(replayer.state().scene(), image.view, step.result.changed_pixels.indices(image.frame.width));
     static_cast<void>(timed(replayer, StepKind::step, inverse, journal));
   }
 

@@ -32,7 +32,8 @@ struct LookTable {
                                    FullRender& full);
 /// Beside the paper's.
 void print_looks(const BenchOptions& options, const LookTable& table, double full_seconds);
-/// First edits of parameters that nobody chose; bytes of compressed trees; what later edits move; work of optical edits.
+/// First edits of parameters that nobody chose; bytes of compressed trees; what later edits move; work of optical
+/// edits.
 void print_look_details(const BenchOptions& options, const LookTable& table, double full_seconds);
 
 }  // namespace relook

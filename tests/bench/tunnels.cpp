@@ -170,8 +170,9 @@ void print_tunnels(const BenchOptions& options) {
   const TunnelTimes times = time_tunnels(options, move);
   std::printf(
       "relook_bench tunnels: %s at %ux%u, %u sample(s), %zu thread(s); full render %.0f ms, fastest of %d\n"
-      "preprocess: without writing; x: over the full render (paper: 1.72; to reach: 1.3). Tunnels that are stored; their "
-      "bytes a sample on disk and in memory (paper: 66), and of\nthe whole cache. Milliseconds from the opening of a "
+      "preprocess: without writing; x: over the full render (paper: 1.72; to reach: 1.3). Tunnels that are stored; "
+      "their bytes a sample on disk and in memory (paper: 66), and of\nthe whole cache. Milliseconds from the opening "
+      "of a "
       "cache to the first frame of \"%s\" in this process, without writing it: opening + step, of a cache\nwithout "
       "tunnels, where a step that moves builds them, and of one with; what is saved, and as a share of preprocess\n",
       options.scene.c_str(), options.width, options.height, options.view.samples, thread_count(), times.full * 1e3,

@@ -4,7 +4,7 @@
 
 namespace relook {
 
-/// `options`: journal "-": the first mesh node is moved a little. Throws InputError if the journal has no geometric step.
+/// `options`: journal "-": the first mesh node is moved a little. Throws InputError if there is nothing to move.
 void print_tunnels(const BenchOptions& options);
 
 }  // namespace relook
