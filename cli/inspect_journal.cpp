@@ -65,6 +65,35 @@ void print_step(const Json& entry, const std::string& label, Console& console) {
   for (const Json& reason : entry["reasons"]) console.line("  " + printable(reason.get<std::string>()));
 }
 
+/// `inspect --json`, written as it grows: a journal may have a million frames.
+class JsonOutput {
+ public:
+  JsonOutput(const Journal& journal, bool is_wanted, Console& console) : console_(console), is_wanted_(is_wanted) {
+    std::string head = json_text({{"hash", journal.hash}, {"journal", journal.file}}, 2);
+    head.resize(head.rfind('\n'));
+    print(head + ",\n  \"steps\": [");
+  }
+  void add(const Json& entry) {
+    if (!is_wanted_) return;
+    std::string text = is_empty_ ? "\n    " : ",\n    ";
+    for (const char c : json_text(entry, 2)) {
+      text += c;
+      if (c == '\n') text += "    ";
+    }
+    print(text);
+    is_empty_ = false;
+  }
+  void end() { print(is_empty_ ? "]\n}\n" : "\n  ]\n}\n"); }
+
+ private:
+  void print(const std::string& text) {
+    if (is_wanted_) console_.print(text);
+  }
+
+  Console& console_;
+  bool is_wanted_, is_empty_ = true;
+};
+
 }  // namespace
 
 void inspect_journal(const Arguments& arguments, Console& console) {
@@ -75,7 +104,7 @@ void inspect_journal(const Arguments& arguments, Console& console) {
     state.emplace(open_state(arguments, console));
     console.warn(check_journal(*state, journal));
   }
-  Json steps = Json::array();
+  JsonOutput output(journal, arguments.json, console);
   for (std::size_t i = 0; i < journal.steps.size(); ++i) {
     const JournalStep& step = journal.steps[i];
     const std::string label = std::to_string(i + 1);
@@ -84,19 +113,20 @@ void inspect_journal(const Arguments& arguments, Console& console) {
     if (state && !has_frames) add_classification(entry, classify_edit(*state, step.edit, journal));
     if (!state || !has_frames) {
       print_step(entry, label, console);
-      steps.push_back(std::move(entry));
+      output.add(entry);
       continue;
     }
-    const std::span<const Edit> frames = frames_of(step);
+    const StepFrames frames = frames_of(step);
     for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+      console.check_interrupt();
       Json frame_entry = entry;
       frame_entry[step.drag.empty() ? "wedge_frame" : "drag_frame"] = frame + 1;
       add_classification(frame_entry, classify_edit(*state, frames[frame], journal));
       print_step(frame_entry, label + "." + std::to_string(frame + 1), console);
-      steps.push_back(std::move(frame_entry));
+      output.add(frame_entry);
     }
   }
-  console.json({{"journal", journal.file}, {"hash", journal.hash}, {"steps", std::move(steps)}});
+  output.end();
 }
 
 }  // namespace relook

@@ -149,15 +149,17 @@ void JournalRun::leave_off() {
 
 void JournalRun::run_steps() {
   for (std::uint32_t step = 1; step < plan_.first_step(); ++step)
-    for (const Edit& edit : edits_of(step)) pending_.push_back(&edit), ++frame_number_;
+    for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame, ++frame_number_)
+      pending_.add(edit_of(step, frame));
   if (plan_.first_step() > 0) ++frame_number_;
   if (arguments_.baseline && !arguments_.verify_percent) full_render();
   for (std::uint32_t step = plan_.first_step(); step <= plan_.last_step(); ++step) run_step(step);
   console_.part_done();
 }
 
-std::span<const Edit> JournalRun::edits_of(std::uint32_t step) const {
-  return step == 0 ? std::span<const Edit>() : frames_of(journal_.steps[step - 1]);
+/// Requires: not of step 0, which is the frame before any edit.
+Edit JournalRun::edit_of(std::uint32_t step, std::size_t frame) const {
+  return frames_of(journal_.steps[step - 1])[frame];
 }
 
 void JournalRun::run_step(std::uint32_t step) {
@@ -191,12 +193,12 @@ void JournalRun::pass_kept(std::uint32_t step, std::size_t frame) {
   const StepReport entry = new_entry(step, frame);
   console_.log_line(label_of(entry) + " \"" + printable(entry.name) + "\": kept");
   if (step == 0) return;
-  const Edit& edit = edits_of(step)[frame];
+  Edit edit = edit_of(step, frame);
   follows_last_ = false;
   if (is_dragging_)
     (void)replayer_.drag(edit, journal_.file, journal_.path.parent_path());
   else
-    pending_.push_back(&edit);
+    pending_.add(std::move(edit));
 }
 
 /// Goes to where the scene is before the next frame.
@@ -204,7 +206,7 @@ void JournalRun::catch_up() {
   if (pending_.empty()) return;
   const auto start = std::chrono::steady_clock::now();
   const TraceScope span = console_.span("edits before");
-  for (const Edit& edit : merged(std::exchange(pending_, {}))) {
+  for (const Edit& edit : pending_.take()) {
     console_.check_interrupt();
     (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
   }
@@ -221,7 +223,7 @@ StepResult JournalRun::edited(const StepReport& entry, std::size_t frame) {
     result.classification.change = ChangeClass::base;
     return result;
   }
-  const Edit& edit = edits_of(entry.place.step)[frame];
+  const Edit edit = edit_of(entry.place.step, frame);
   const std::filesystem::path folder = journal_.path.parent_path();
   is_dragging_ = entry.is_drag;
   return entry.is_drag ? replayer_.drag(edit, journal_.file, folder) : replayer_.step(edit, journal_.file, folder);

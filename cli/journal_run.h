@@ -58,7 +58,7 @@ class JournalRun {
   void pass_kept(std::uint32_t step, std::size_t frame);
   void end_numbered(std::uint32_t step);
   [[nodiscard]] StepReport new_entry(std::uint32_t step, std::size_t frame) const;
-  [[nodiscard]] std::span<const Edit> edits_of(std::uint32_t step) const;
+  [[nodiscard]] Edit edit_of(std::uint32_t step, std::size_t frame) const;
   void show_part(const StepReport& entry);
   void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
   void verify(StepReport& entry);
@@ -79,7 +79,7 @@ class JournalRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::uint64_t pixels_different_ = 0, pixels_compared_ = 0;
   Moves rebuilt_;                          // as the cache was read
-  std::vector<const Edit*> pending_;       // of frames that are there already: to be made before the next that is not
+  MergedEdits pending_;                    // of frames that are there already: to be made before the next that is not
   bool is_dragging_ = false;               // the selection of the present step is out of the ray trees
   bool follows_last_ = false;              // the frame to come follows the last one written: no edit lies between
   std::size_t frames_done_ = 0;            // of those asked for

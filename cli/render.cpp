@@ -28,10 +28,10 @@ void apply_journal(SceneState& state, const Journal& journal, const std::optiona
   console.warn(check_journal(state, journal));
   ChangeClass change = ChangeClass::base;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::span<const Edit> frames = frames_of(journal.steps[i]);
-    for (const Edit& frame : frames) {
-      if (i + 1 == count && &frame == &frames.back()) before_last();
-      const SceneDelta delta = apply_edit(state, frame, journal.file, journal.path.parent_path());
+    const StepFrames frames = frames_of(journal.steps[i]);
+    for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+      if (i + 1 == count && frame + 1 == frames.size()) before_last();
+      const SceneDelta delta = apply_edit(state, frames[frame], journal.file, journal.path.parent_path());
       change = classify(state.scene(), delta).change;
     }
   }

@@ -158,14 +158,14 @@ void RunPlan::judge_run() {
   if (replaces_all_) require_known_files();
 }
 
-const std::string* RunPlan::expected_edits(const LedgerKey& key) const {
+std::optional<std::string> RunPlan::expected_edits(const LedgerKey& key) const {
   const auto& [step, number] = key;
-  if (step > journal_.steps.size()) return nullptr;
-  if (step == 0) return number == kWholeStep ? &hashes_.at(0, 0) : nullptr;
+  if (step > journal_.steps.size()) return std::nullopt;
+  if (step == 0) return number == kWholeStep ? std::optional(hashes_.at(0, 0)) : std::nullopt;
   const JournalStep& entry = journal_.steps[step - 1];
-  if (number == kWholeStep) return &hashes_.after(step);
+  if (number == kWholeStep) return hashes_.after(step);
   const bool is_numbered = !entry.drag.empty() || !entry.wedge.empty();
-  return is_numbered && number <= frames_of(entry).size() ? &hashes_.at(step, number - 1) : nullptr;
+  return is_numbered && number <= frames_of(entry).size() ? std::optional(hashes_.at(step, number - 1)) : std::nullopt;
 }
 
 std::optional<std::string> RunPlan::other_journal() const {
@@ -175,13 +175,13 @@ std::optional<std::string> RunPlan::other_journal() const {
              " to " + std::to_string(task.last_step) + ")";
   for (const auto& [key, note] : ledger_->notes()) {
     if (is_of_journal(key, note)) continue;
-    const std::string* expected = expected_edits(key);
+    const std::optional<std::string> expected = expected_edits(key);
     const Json entry = ledger_->entry(note);
     const std::string name = printable(entry.value("name", "")), frame = entry.value("frame", "");
-    if (expected != nullptr && key.second == kWholeStep && frame.find('_') != std::string::npos)
+    if (expected && key.second == kWholeStep && frame.find('_') != std::string::npos)
       continue;  // a wedge or drag with more frames than before: only its own entry is another
     return "a run of another journal (its step " + std::to_string(key.first) + ", \"" + name + "\", is " +
-           (expected == nullptr ? "not in " : "not that of ") + printable(journal_.file) + ")";
+           (expected ? "not that of " : "not in ") + printable(journal_.file) + ")";
   }
   return std::nullopt;
 }
@@ -282,8 +282,8 @@ FramePlace RunPlan::place(std::uint32_t step, std::size_t frame) const {
 }
 
 bool RunPlan::is_of_journal(const LedgerKey& key, const RunLedger::Note& note) const {
-  const std::string* expected = expected_edits(key);
-  return expected != nullptr && *expected == note.edits;
+  const std::optional<std::string> expected = expected_edits(key);
+  return expected && *expected == note.edits;
 }
 
 bool RunPlan::is_frame(const LedgerKey& key) const {

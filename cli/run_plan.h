@@ -64,7 +64,7 @@ class RunPlan {
   void require_known_files() const;
   void find_kept();
   [[nodiscard]] std::optional<std::string> other_journal() const;
-  [[nodiscard]] const std::string* expected_edits(const LedgerKey& key) const;
+  [[nodiscard]] std::optional<std::string> expected_edits(const LedgerKey& key) const;
   [[nodiscard]] bool is_kept(const RunLedger::Note& note, const Json& entry) const;
   [[nodiscard]] bool has_current_page() const;
   void require_free(const std::string& name) const;

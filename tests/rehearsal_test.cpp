@@ -20,6 +20,16 @@ Journal journal_of(const std::vector<std::string>& edits) {
   return journal;
 }
 
+/// Of the intensity of the light Bulb, in the first step.
+Wedge wedge_of(const std::vector<Json>& values) {
+  Wedge wedge;
+  wedge.path = "/lights/Bulb/intensity";
+  wedge.values = values;
+  wedge.count = values.size();
+  wedge.where = "/steps/0/wedge";
+  return wedge;
+}
+
 TEST(Rehearsal, leaves_the_state_exactly_as_it_was) {
   SceneState state = small_state();
   const Json look = state.document().look;
@@ -105,11 +115,9 @@ TEST(Rehearsal, takes_back_all_of_a_drag_or_wedge_that_goes_wrong) {
   const Json look = state.document().look;
   const std::string scene = scene_text(state.scene());
   Journal journal = journal_of({"[]", R"([{"op": "test", "path": "/lights/Bulb/intensity", "value": 30}])"});
-  for (const char* value : {"50", "-1", "60"})
-    journal.steps[0].wedge.push_back(
-        edit_of(R"([{"op": "replace", "path": "/lights/Bulb/intensity", "value": )" + std::string(value) + "}]"));
+  journal.steps[0].wedge = wedge_of({50, -1, 60});
   const std::string message = message_of([&] { (void)check_journal(state, journal); });
-  EXPECT_EQ(message, "j.json: /edit/0/value: -1 is below 0");
+  EXPECT_EQ(message, "j.json: /steps/0/wedge/values/1: -1 is below 0");
   EXPECT_EQ(state.document().look, look);
   EXPECT_EQ(scene_text(state.scene()), scene);
 }
@@ -153,15 +161,13 @@ TEST(Rehearsal, warns_of_steps_that_change_nothing) {
 
 TEST(Rehearsal, warns_once_of_a_wedge_or_drag_none_of_whose_entries_changes_anything) {
   SceneState state = small_state();
-  const auto warnings = [&](const std::vector<std::string>& values) {
+  const auto warnings = [&](const std::vector<Json>& values) {
     Journal journal = journal_of({"[]"});
-    for (const std::string& value : values)
-      journal.steps[0].wedge.push_back(
-          edit_of(R"([{"op": "replace", "path": "/lights/Bulb/intensity", "value": )" + value + "}]"));
+    journal.steps[0].wedge = wedge_of(values);
     return check_journal(state, journal).size();
   };
-  EXPECT_EQ(warnings({"30", "30"}), 1U);
-  EXPECT_EQ(warnings({"30", "40"}), 0U);  // starts where the scene stands
+  EXPECT_EQ(warnings({30, 30}), 1U);
+  EXPECT_EQ(warnings({30, 40}), 0U);  // starts where the scene stands
 }
 
 /// A drag of one entry.

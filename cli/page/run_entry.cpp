@@ -166,7 +166,7 @@ Json details_of(const Json& entry, const Journal& journal, const Json& kinds) {
   if (place == 0 || place > journal.steps.size()) return std::move(details.json());
   const JournalStep& step = journal.steps[place - 1];
   details.add("select", step.select.size(), [&](std::size_t i) { return cut_text(step.select[i], kLongestText); });
-  const std::span<const Edit> frames = frames_of(step);
+  const StepFrames frames = frames_of(step);
   const std::size_t frame = frame_in_step(entry);
   if (frame > 0 && frame <= frames.size())
     details.add_edit(frames[frame - 1]);

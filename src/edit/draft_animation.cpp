@@ -12,7 +12,8 @@
 namespace relook {
 namespace {
 
-constexpr double kMostFrames = 10'000;
+constexpr double kMostAnimationFrames = 10'000;
+constexpr double kMostAnimatedValues = 300'000;  // frames times channels: operations of the journal
 
 /// A channel with the property of the look document that it animates.
 struct Track {
@@ -114,10 +115,14 @@ std::vector<double> sample_times(const std::vector<Track>& tracks, const SampleT
     throw UsageError("--from " + Json(from).dump() + " is after the end of \"" + name + "\", " + Json(to).dump());
   constexpr double kRounding = 1e-6;  // of a frame: the last keyframe counts when it is due
   const double steps = std::floor((to - from) * times.frames_per_second + kRounding);
-  if (!(steps < kMostFrames))
+  if (!(steps < kMostAnimationFrames))
     throw InputError(file, "",
-                     "animation \"" + name + "\" has more than " + Json(kMostFrames).dump() +
+                     "animation \"" + name + "\" has more than " + Json(kMostAnimationFrames).dump() +
                          " frames; fewer with --fps, --from, --to");
+  if ((steps + 1) * static_cast<double>(tracks.size()) > kMostAnimatedValues)
+    throw InputError(file, "",
+                     "animation \"" + name + "\" has more than " + Json(kMostAnimatedValues).dump() +
+                         " values in its frames; fewer with --fps, --from, --to");
   std::vector<double> samples;
   for (std::size_t i = 0; i <= static_cast<std::size_t>(steps); ++i)
     samples.push_back(std::min(from + static_cast<double>(i) / times.frames_per_second, to));

@@ -56,63 +56,71 @@ std::vector<std::string> read_selection(const JsonView& view) {
   return selection;
 }
 
-constexpr std::size_t kMostWedgeValues = 10'000;
-
-/// `range.count` values evenly spaced from `range.from` to `range.to`, numbers or arrays of numbers.
-std::vector<Json> spaced_values(const JsonView& range) {
-  constexpr std::array<std::string_view, 3> kKeys{"from", "to", "count"};
-  constexpr double kLargest = 1e30;
-  range.only_keys(kKeys);
-  const auto count = static_cast<std::size_t>(range.at("count").integer(2, kMostWedgeValues));
-  const auto between = [&](const JsonView& from, const JsonView& to, std::size_t i) -> Json {
-    const double a = from.number(-kLargest, kLargest), b = to.number(-kLargest, kLargest);
-    return i + 1 == count ? b : a + (b - a) * static_cast<double>(i) / static_cast<double>(count - 1);
-  };
-  const JsonView from = range.at("from"), to = range.at("to");
-  std::vector<Json> values;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!from.value().is_array()) {
-      values.push_back(between(from, to, i));
-      continue;
-    }
-    to.require_array();
-    if (to.size() != from.size()) to.fail("expected as many numbers as in \"from\"");
-    values.push_back(Json::array());
-    for (std::size_t k = 0; k < from.size(); ++k) values.back().push_back(between(from.at(k), to.at(k), i));
+/// Counts the frames of a journal as they are read.
+class FrameCount {
+ public:
+  /// Throws JournalLimitError at `place`, which asks for `frames` more, when these are too many.
+  void add(std::size_t frames, const JsonView& place) {
+    if (frames > kMostFrames - frames_)
+      throw JournalLimitError(place.file(), place.pointer(),
+                              "with this the journal has more than " + std::to_string(kMostFrames) +
+                                  " frames, the most that one may have");
+    frames_ += frames;
   }
-  return values;
+
+ private:
+  std::size_t frames_ = 0;
+};
+
+constexpr double kLargestOfRange = 1e30;
+
+void require_range_value(const JsonView& value) { (void)value.number(-kLargestOfRange, kLargestOfRange); }
+
+void read_range(const JsonView& range, FrameCount& frames, Wedge& wedge) {
+  constexpr std::array<std::string_view, 3> kKeys{"from", "to", "count"};
+  constexpr std::size_t kMostNumbers = 16;  // of one value: a matrix
+  constexpr std::int64_t kMostCount = 1'000'000'000'000;
+  range.only_keys(kKeys);
+  const JsonView from = range.at("from"), to = range.at("to"), count = range.at("count");
+  wedge.count = static_cast<std::size_t>(count.integer(2, kMostCount));
+  if (from.value().is_array()) {
+    to.require_array();
+    if (from.size() > kMostNumbers) from.fail("expected at most " + std::to_string(kMostNumbers) + " numbers");
+    if (to.size() != from.size()) to.fail("expected as many numbers as in \"from\"");
+    for (std::size_t k = 0; k < from.size(); ++k) {
+      require_range_value(from.at(k));
+      require_range_value(to.at(k));
+    }
+  } else {
+    require_range_value(from);
+    require_range_value(to);
+  }
+  frames.add(wedge.count, count);
+  wedge.from = from.value();
+  wedge.to = to.value();
 }
 
-/// One "replace" for each value.
-std::vector<Edit> read_wedge(const JsonView& view) {
+Wedge read_wedge(const JsonView& view, FrameCount& frames) {
   constexpr std::array<std::string_view, 3> kKeys{"path", "values", "range"};
   view.only_keys(kKeys);
   if (view.has("values") == view.has("range")) view.fail("a wedge has either \"values\" or \"range\"");
-  std::vector<Json> values;
+  Wedge wedge;
+  wedge.path = read_pointer(view.at("path"));
+  wedge.where = view.pointer();
   if (view.has("range")) {
-    values = spaced_values(view.at("range"));
-  } else {
-    const JsonView list = view.at("values");
-    list.require_array();
-    if (list.size() == 0 || list.size() > kMostWedgeValues)
-      list.fail("expected 1 to " + std::to_string(kMostWedgeValues) + " values");
-    for (std::size_t i = 0; i < list.size(); ++i) values.push_back(list.at(i).value());
+    read_range(view.at("range"), frames, wedge);
+    return wedge;
   }
-  std::vector<Edit> wedge;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    PatchOperation operation;
-    operation.op = PatchOp::replace;
-    operation.path = read_pointer(view.at("path"));
-    operation.value = std::move(values[i]);
-    operation.where = view.pointer();
-    operation.value_where =
-        view.has("range") ? view.pointer() + "/range" : view.pointer() + "/values/" + std::to_string(i);
-    wedge.push_back({std::move(operation)});
-  }
+  const JsonView list = view.at("values");
+  list.require_array();
+  if (list.size() == 0) list.fail("expected at least one value");
+  frames.add(list.size(), list);
+  wedge.count = list.size();
+  wedge.values = list.value().get_ref<const Json::array_t&>();
   return wedge;
 }
 
-JournalStep read_step(const JsonView& view, std::size_t number) {
+JournalStep read_step(const JsonView& view, std::size_t number, FrameCount& frames) {
   constexpr std::array<std::string_view, 5> kKeys{"name", "edit", "select", "drag", "wedge"};
   view.only_keys(kKeys);
   JournalStep step;
@@ -121,11 +129,12 @@ JournalStep read_step(const JsonView& view, std::size_t number) {
   const bool has_edit = view.has("edit"), has_drag = view.has("drag");
   if (view.has("wedge")) {
     if (has_edit || has_drag || view.has("select")) view.fail("a step with \"wedge\" has nothing else");
-    step.wedge = read_wedge(view.at("wedge"));
+    step.wedge = read_wedge(view.at("wedge"), frames);
     return step;
   }
   if (has_edit && (has_drag || view.has("select"))) view.fail("a step has either \"edit\" or \"select\" and \"drag\"");
   if (has_edit) {
+    frames.add(1, view);
     step.edit = read_edit(view.at("edit"));
     return step;
   }
@@ -134,6 +143,7 @@ JournalStep read_step(const JsonView& view, std::size_t number) {
   const JsonView drag = view.at("drag");
   drag.require_array();
   if (drag.size() == 0) drag.fail("a drag needs at least one entry");
+  frames.add(drag.size(), drag);
   for (std::size_t i = 0; i < drag.size(); ++i) step.drag.push_back(read_edit(drag.at(i)));
   return step;
 }
@@ -152,7 +162,30 @@ std::string journal_name(const std::filesystem::path& path) {
   return name.empty() || name == "." || name == ".." ? "journal" : name;
 }
 
+double between(double from, double to, std::size_t i, std::size_t count) {
+  return i + 1 == count ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
+}
+
 }  // namespace
+
+Edit Wedge::operator[](std::size_t i) const {
+  PatchOperation operation;
+  operation.path = path;
+  operation.where = where;
+  operation.value_where = where + (values.empty() ? "/range" : "/values/" + std::to_string(i));
+  if (!values.empty()) {
+    operation.value = values[i];
+  } else if (from.is_array()) {
+    operation.value = Json::array();
+    for (std::size_t k = 0; k < from.size(); ++k)
+      operation.value.push_back(between(from[k].get<double>(), to[k].get<double>(), i, count));
+  } else {
+    operation.value = between(from.get<double>(), to.get<double>(), i, count);
+  }
+  Edit edit;
+  edit.push_back(std::move(operation));
+  return edit;
+}
 
 Journal read_journal(const std::filesystem::path& path, const WhileWaiting& while_waiting) {
   const Bytes bytes = read_input(path, while_waiting);
@@ -176,8 +209,9 @@ Journal parse_journal(std::string_view text, const std::filesystem::path& path) 
   const JsonView steps = view.at("steps");
   steps.require_array();
   StepErrors errors(journal.file);
+  FrameCount frames;
   for (std::size_t i = 0; i < steps.size(); ++i)
-    errors.is_sound([&] { journal.steps.push_back(read_step(steps.at(i), i + 1)); });
+    errors.is_sound([&] { journal.steps.push_back(read_step(steps.at(i), i + 1, frames)); });
   errors.require_none();
   return journal;
 }

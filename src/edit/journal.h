@@ -1,7 +1,8 @@
 // journal/1: steps of RFC 6902 edits on the look document, read strictly. Nothing here knows pixels.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -22,21 +23,60 @@ struct PatchOperation {
 };
 using Edit = std::vector<PatchOperation>;
 
+/// One parameter, one value a frame; the last stays. A frame's edit is made when it is asked for: a wedge takes the
+/// memory of its text, whatever its count.
+struct Wedge {
+  std::string path;
+  std::vector<Json> values;   // empty for a range
+  Json from, to;              // a range: numbers or arrays of as many numbers
+  std::size_t count = 0;      // of frames
+  std::string where;          // "/steps/3/wedge"
+  [[nodiscard]] bool empty() const { return count == 0; }
+  [[nodiscard]] std::size_t size() const { return count; }
+  /// A "replace" of the value; of a range, `i` of `count` evenly spaced ones from `from` to `to`.
+  [[nodiscard]] Edit operator[](std::size_t i) const;
+};
+
+/// The most frames a journal may have, of all its steps together.
+inline constexpr std::size_t kMostFrames = 1'000'000;
+
 struct JournalStep {
   std::string name;
   Edit edit;                        // empty for a drag and a wedge
   std::vector<std::string> select;  // drag: "/nodes/<name>" pointers
   std::vector<Edit> drag;           // one intermediate frame each; the last is committed
-  std::vector<Edit> wedge;          // one parameter, one value and one frame each; the last stays
+  Wedge wedge;
   std::string where;                // "/steps/3"
 };
 
-/// The frames of a step, each an edit: those of a drag or a wedge, or the one of a plain edit.
-[[nodiscard]] inline std::span<const Edit> frames_of(const JournalStep& step) {
-  if (!step.drag.empty()) return step.drag;
-  if (!step.wedge.empty()) return step.wedge;
-  return {&step.edit, 1};
-}
+/// The frames of a step, each an edit: those of a drag or a wedge, or the one of a plain edit. Refers to the step.
+class StepFrames {
+ public:
+  class Iterator {
+   public:
+    Iterator(const StepFrames& frames, std::size_t at) : frames_(frames), at_(at) {}
+    [[nodiscard]] Edit operator*() const { return frames_[at_]; }
+    Iterator& operator++() { return ++at_, *this; }
+    [[nodiscard]] bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const StepFrames& frames_;
+    std::size_t at_;
+  };
+  explicit StepFrames(const JournalStep& step) : step_(&step) {}
+  [[nodiscard]] std::size_t size() const {
+    return !step_->drag.empty() ? step_->drag.size() : !step_->wedge.empty() ? step_->wedge.size() : 1;
+  }
+  [[nodiscard]] Edit operator[](std::size_t i) const {
+    return !step_->drag.empty() ? step_->drag[i] : !step_->wedge.empty() ? step_->wedge[i] : step_->edit;
+  }
+  [[nodiscard]] Iterator begin() const { return {*this, 0}; }
+  [[nodiscard]] Iterator end() const { return {*this, size()}; }
+
+ private:
+  const JournalStep* step_;
+};
+[[nodiscard]] inline StepFrames frames_of(const JournalStep& step) { return StepFrames(step); }
 
 struct Journal {
   std::filesystem::path path;  // where it was read; assets and images it names lie below its folder
@@ -48,7 +88,7 @@ struct Journal {
 };
 
 /// A file or, as "-", standard input. Throws InputError{file, pointer, ...} for the file as a whole, InputErrors that
-/// name the wrong steps.
+/// name the wrong steps; a journal of more than kMostFrames frames is not read beyond the step that is too much.
 [[nodiscard]] Journal read_journal(const std::filesystem::path& path, const WhileWaiting& while_waiting = {});
 /// A journal that is not in a file yet: `path` is where it will be.
 [[nodiscard]] Journal parse_journal(std::string_view text, const std::filesystem::path& path);

@@ -79,6 +79,7 @@ void Transaction::copy_descendants(const std::string& copy, const PatchPlace& pl
       const std::string name = unique_name(copy + "/" + last, [&](const std::string& candidate) {
         return find({"nodes", candidate}) != nullptr;
       });
+      count_copy(*original, {"nodes", name}, place);
       add_entry("nodes", name, Json(*original));
       copied.insert(name);
       copies.push_back(name);

@@ -2,7 +2,6 @@
 // that is wrong leaves nothing behind, so that the next ones are judged by what they say themselves; one that builds on
 // what a wrong step was to add is wrong, too.
 #include <algorithm>
-#include <memory>
 
 #include "edit/apply.h"
 #include "edit/step_errors.h"
@@ -11,7 +10,7 @@
 namespace relook {
 namespace {
 
-bool is_guard(std::span<const Edit> frames) {
+bool is_guard(const StepFrames& frames) {
   bool has_operations = false;
   for (const Edit& edit : frames)
     for (const PatchOperation& operation : edit) {
@@ -24,7 +23,11 @@ bool is_guard(std::span<const Edit> frames) {
 class Rehearsal {
  public:
   Rehearsal(SceneState& state, const Journal& journal)
-      : state_(state), journal_(journal), counts_(state.slot_counts()), errors_(journal.file) {}
+      : state_(state),
+        journal_(journal),
+        counts_(state.slot_counts()),
+        done_(state, journal.file, journal.path.parent_path()),
+        errors_(journal.file) {}
 
   /// Requires a journal without errors. Of one step at least: not only colours change.
   [[nodiscard]] bool finds_class_beyond_color() {
@@ -52,25 +55,27 @@ class Rehearsal {
 
  private:
   void try_step(const JournalStep& step) {
-    const std::span<const Edit> frames = frames_of(step);
-    const std::size_t before = done_.size();
-    bool changes_scene = false, changes_document = false;
-    const bool is_sound = errors_.is_sound([&] {
-      for (std::size_t entry = 0; entry < frames.size(); ++entry) {
-        if (!step.drag.empty()) check_drag_scope(state_, step, entry, journal_.file);
-        auto transaction = std::make_unique<Transaction>(state_, journal_.file, journal_.path.parent_path());
-        const SceneDelta delta = transaction->apply(frames[entry]);
-        changes_scene = changes_scene || !delta.empty();
-        if (notes_classes_ && !is_beyond_color_)
-          is_beyond_color_ = classify(state_.scene(), delta).change != ChangeClass::color;
-        changes_document = changes_document || (delta.empty() && transaction->has_changes());
-        done_.push_back(std::move(transaction));
-      }
-    });
-    if (!is_sound)
-      take_back(before);
-    else if (!changes_scene && !is_guard(frames))
-      warn(step, changes_document);
+    const StepFrames frames = frames_of(step);
+    Transaction transaction(state_, journal_.file, journal_.path.parent_path());
+    transaction.count_after(done_);
+    bool changes_scene = false;
+    try {
+      const bool is_sound = errors_.is_sound([&] {
+        for (std::size_t entry = 0; entry < frames.size(); ++entry) {
+          if (!step.drag.empty()) check_drag_scope(state_, step, entry, journal_.file);
+          const SceneDelta delta = transaction.apply(frames[entry]);
+          changes_scene = changes_scene || !delta.empty();
+          if (notes_classes_ && !is_beyond_color_)
+            is_beyond_color_ = classify(state_.scene(), delta).change != ChangeClass::color;
+        }
+      });
+      if (!is_sound) return transaction.undo();
+    } catch (...) {
+      transaction.undo();
+      throw;
+    }
+    if (!changes_scene && !is_guard(frames)) warn(step, transaction.has_changes());
+    done_.absorb(std::move(transaction));
   }
 
   void warn(const JournalStep& step, bool changes_document) {
@@ -79,18 +84,15 @@ class Rehearsal {
                         (changes_document ? " that the scene shows" : ""));
   }
 
-  void take_back(std::size_t count) {
-    for (; done_.size() > count; done_.pop_back()) done_.back()->undo();
-  }
   void take_back_all() {
-    take_back(0);
+    done_.undo();
     state_.drop_slots_after(counts_);
   }
 
   SceneState& state_;
   const Journal& journal_;
   const SlotCounts counts_;
-  std::vector<std::unique_ptr<Transaction>> done_;
+  Transaction done_;  // all sound steps so far
   StepErrors errors_;
   std::vector<std::string> warnings_;
   std::size_t idle_steps_ = 0;  // that change nothing

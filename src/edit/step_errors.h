@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/input_errors.h"
+#include "edit/growth.h"
 
 namespace relook {
 
@@ -15,12 +16,17 @@ class StepErrors {
  public:
   explicit StepErrors(std::string file) : file_(std::move(file)) {}
 
-  /// Whether `work` on a step throws no InputError; one that it throws is noted. Other errors pass.
+  /// Whether `work` on a step throws no InputError; one that it throws is noted. Other errors pass; a
+  /// JournalLimitError ends the search at once, as require_none() does.
   template <class Work>
   bool is_sound(const Work& work) {
     try {
       work();
       return true;
+    } catch (const JournalLimitError& error) {
+      note(error.what());
+      require_none();
+      return false;
     } catch (const InputError& error) {
       note(error.what());
       return false;

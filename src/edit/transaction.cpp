@@ -1,7 +1,9 @@
 #include "edit/transaction.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
+#include <utility>
 
 #include "scene/look_names.h"
 
@@ -49,6 +51,8 @@ Transaction::Transaction(SceneState& state, std::string_view file, std::filesyst
 
 SceneDelta Transaction::apply(const Edit& edit) {
   std::vector<Resolved> done;
+  touched_earlier_.merge(std::exchange(touched_, {}));
+  grown_.clear();
   try {
     for (const PatchOperation& operation : edit) {
       done.push_back({&operation, resolve(operation.path, {file_, operation.where + "/path"}), {}});
@@ -58,17 +62,38 @@ SceneDelta Transaction::apply(const Edit& edit) {
     }
     return state_.recompile({touched_.begin(), touched_.end()}, file_);
   } catch (const LookError& error) {
-    restore_document();
+    give_up();
     rethrow(error, done);
   } catch (...) {
-    restore_document();
+    give_up();
     throw;
   }
 }
 
 void Transaction::undo() {
   restore_document();
-  (void)state_.recompile({touched_.begin(), touched_.end()}, file_);
+  touched_earlier_.merge(std::exchange(touched_, {}));
+  if (!touched_earlier_.empty()) (void)state_.recompile({touched_earlier_.begin(), touched_earlier_.end()}, file_);
+}
+
+/// What an edit touched that was refused has not been compiled, and may have names that no compiler takes.
+void Transaction::give_up() {
+  restore_document();
+  touched_.clear();
+}
+
+void Transaction::absorb(Transaction&& later) {
+  for (auto& entry : later.before_)
+    if (saved_.insert(entry.first).second) before_.push_back(std::move(entry));
+  touched_earlier_.merge(later.touched_);
+  touched_earlier_.merge(later.touched_earlier_);
+  const auto append = [](std::vector<std::string>& names, std::vector<std::string>& more) {
+    std::ranges::move(more, std::back_inserter(names));
+  };
+  append(new_geometry_, later.new_geometry_);
+  append(new_images_, later.new_images_);
+  append(new_instances_, later.new_instances_);
+  copied_ += later.copied_;
 }
 
 bool Transaction::has_changes() {
@@ -107,9 +132,11 @@ void Transaction::run(Resolved& resolved) {
   touch(path);
   switch (operation.op) {
     case PatchOp::add:
+      require_shallow(operation.value, path.size(), file_, operation.value_where);
       add_at(look, path, operation.value, place);
       break;
     case PatchOp::replace:
+      require_shallow(operation.value, path.size(), file_, operation.value_where);
       replaced_value(path, place) = operation.value;
       break;
     case PatchOp::remove:
@@ -120,7 +147,9 @@ void Transaction::run(Resolved& resolved) {
         (void)remove_at(look, path, place);
       break;
     case PatchOp::copy: {
-      Json value = value_at(look, resolved.from, from_place);
+      const Json& original = value_at(look, resolved.from, from_place);
+      count_copy(original, path, place);
+      Json value = original;
       add_at(look, path, std::move(value), place);
       if (is_node(path) && is_node(resolved.from)) copy_descendants(path[1], place);
       break;
@@ -129,6 +158,7 @@ void Transaction::run(Resolved& resolved) {
       if (is_prefix(resolved.from, path) && resolved.from != path)
         throw InputError(file_, place.where, "a value cannot be moved into itself");
       touch(resolved.from);
+      require_shallow(value_at(look, resolved.from, from_place), path.size(), file_, place.where);
       Json value = remove_at(look, resolved.from, from_place);
       add_at(look, path, std::move(value), place);
       if (is_node(path) && is_node(resolved.from)) rename_node(resolved.from[1], path[1]);
@@ -138,6 +168,29 @@ void Transaction::run(Resolved& resolved) {
       break;
   }
   normalize(resolved);
+}
+
+void Transaction::count_copy(const Json& value, const Tokens& to, const PatchPlace& place) {
+  require_shallow(value, to.size(), place.file, place.where);
+  Extent left = kMostCopied;
+  left -= copied_before_;
+  left -= copied_;
+  const Extent extent = extent_of(value, left);
+  if (extent.exceeds(left))
+    throw JournalLimitError(place.file, place.where,
+                            "\"copy\" may make " + std::to_string(kMostCopied.values) + " values and " +
+                                std::to_string(kMostCopied.bytes) + " bytes of text in a journal, and no more");
+  if (to.size() > 2 && section_of(to[0])) {
+    const auto [grown, is_new] = grown_.try_emplace({to[0], to[1]});
+    const Json* entry = is_new ? find({to[0], to[1]}) : nullptr;
+    if (entry != nullptr) grown->second = extent_of(*entry, kMostInEntry);
+    grown->second += extent;
+    if (grown->second.exceeds(kMostInEntry))
+      throw JournalLimitError(place.file, place.where,
+                              "\"copy\" may make an entry of " + std::to_string(kMostInEntry.values) + " values and " +
+                                  std::to_string(kMostInEntry.bytes) + " bytes of text, and no more");
+  }
+  copied_ += extent;
 }
 
 Json& Transaction::replaced_value(const Tokens& path, const PatchPlace& place) {
@@ -268,6 +321,7 @@ void Transaction::restore_document() {
       look[section].erase(name);
   }
   before_.clear();
+  copied_ = {};
   Assets& assets = *document().assets;
   assets.meshes.erase(assets.meshes.begin() + static_cast<std::ptrdiff_t>(mesh_count_), assets.meshes.end());
   for (const std::string& geometry : new_geometry_) assets.mesh_primitives.erase(geometry);

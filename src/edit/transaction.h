@@ -1,12 +1,15 @@
-// One edit of a look document, all or nothing: operations in place, with the earlier value of every entry they touch,
-// so that its price follows from the edit. Used by apply_edit and by the rehearsal of a journal.
+// Edits of a look document, each all or nothing: operations in place, with the earlier value of every entry they touch,
+// so that the price follows from the edit. Several edits may be made in one transaction, to be taken back together:
+// an entry that all of them touch is kept once. Used by apply_edit and by the rehearsal of a journal.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "edit/growth.h"
 #include "edit/journal.h"
 #include "edit/patch.h"
 #include "scene/look_schema.h"
@@ -18,12 +21,17 @@ class Transaction {
  public:
   Transaction(SceneState& state, std::string_view file, std::filesystem::path folder);
 
-  /// Applies an edit. On InputError document, assets and scene are as before.
+  /// Applies an edit. On InputError document and assets are as before the first edit of this transaction, and the
+  /// scene as before this edit; undo() takes back what earlier edits did to the scene.
   SceneDelta apply(const Edit& edit);
-  /// Takes back an edit that was applied: document, assets and scene get their earlier values.
+  /// Takes back all that was applied: document, assets and scene get their earlier values.
   void undo();
-  /// Whether the edit that was applied left any entry of the document other than it was.
+  /// Whether the edits that were applied left any entry of the document other than it was.
   [[nodiscard]] bool has_changes();
+  /// What transactions before this one have copied counts, too.
+  void count_after(const Transaction& earlier) { copied_before_ = earlier.copied_; }
+  /// Takes over a transaction that came after this one: undo() takes back both.
+  void absorb(Transaction&& later);
 
  private:
   /// An operation with its pointers resolved: names for indices, aliases replaced.
@@ -39,12 +47,15 @@ class Transaction {
   /// distance, texture mapping) is created as null if the document omits it, together with the plain objects it lies
   /// in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
   [[nodiscard]] Json& replaced_value(const Tokens& path, const PatchPlace& place);
+  /// Counts a value that is to be copied to `to` ("/nodes" and below) against what a copy may make.
+  void count_copy(const Json& value, const Tokens& to, const PatchPlace& place);
   void touch(const Tokens& tokens);
   void touch(const TouchedEntity& entity);
   void note_section(const std::string& section);
   void normalize(const Resolved& resolved);
   void normalize_entity(const TouchedEntity& entity, const Resolved& resolved);
   void restore_document();
+  void give_up();
   [[noreturn]] void rethrow(const LookError& error, const std::vector<Resolved>& done) const;
   [[nodiscard]] Json* find(const TouchedEntity& entity);
   [[nodiscard]] LookDocument& document() { return state_.editable_document(); }
@@ -70,9 +81,12 @@ class Transaction {
   std::string file_;
   std::filesystem::path folder_;
 
-  std::set<TouchedEntity> touched_;
+  std::set<TouchedEntity> touched_;          // by the present edit
+  std::set<TouchedEntity> touched_earlier_;  // by those before it in this transaction
   std::set<TouchedEntity> saved_;
   std::vector<std::pair<TouchedEntity, std::optional<Json>>> before_;  // in the order of touching
+  Extent copied_before_, copied_;  // by "copy", in earlier transactions and in this one
+  std::map<TouchedEntity, Extent> grown_;  // entries that copies were made into, as they are then
   std::size_t mesh_count_;
   std::vector<std::string> new_geometry_, new_images_, new_instances_;
 };

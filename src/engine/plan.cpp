@@ -41,7 +41,7 @@ class ProxyReplay {
     for (std::size_t i = 0; i < journal.steps.size(); ++i) {
       const JournalStep& step = journal.steps[i];
       if (progress) progress(static_cast<double>(i) / static_cast<double>(journal.steps.size()));
-      const std::span<const Edit> edits = frames_of(step);
+      const StepFrames edits = frames_of(step);
       ChangeClass change = ChangeClass::color;
       PlannedFrame frame;
       frame.name = step.name;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <utility>
 
 #include "base/error.h"
 #include "base/files.h"
@@ -51,9 +52,17 @@ bool only_replaces_values(const Edit& edit) {
          });
 }
 
+/// A number or a few instead of another: nothing else in the document follows from it.
+bool replaces_number(const PatchOperation& operation) {
+  const Json& value = operation.value;
+  return operation.op == PatchOp::replace &&
+         (value.is_number() || (value.is_array() && !value.empty() &&
+                                std::ranges::all_of(value, [](const Json& item) { return item.is_number(); })));
+}
+
 }  // namespace
 
-EditHashes::EditHashes(const Journal& journal) : by_step_(1, std::vector<std::string>(1)) {
+EditHashes::EditHashes(const Journal& journal) : by_step_(1) {
   std::map<std::string, std::string> hashes_of_files;
   const auto hash_of = [&](const std::string& name) -> const std::string& {
     const auto [found, is_new] = hashes_of_files.try_emplace(name);
@@ -63,21 +72,28 @@ EditHashes::EditHashes(const Journal& journal) : by_step_(1, std::vector<std::st
   };
   std::string last;
   for (const JournalStep& step : journal.steps) {
-    std::vector<std::string>& hashes = by_step_.emplace_back();
+    std::string& hashes = by_step_.emplace_back();
+    hashes.reserve(frames_of(step).size() * kDigits);
     const char* kind = !step.drag.empty() ? "drag" : !step.wedge.empty() ? "wedge" : "edit";
     for (const Edit& edit : frames_of(step)) {
-      std::string text = last + kind + std::to_string(hashes.size());
+      std::string text = last + kind + std::to_string(hashes.size() / kDigits);
       for (const PatchOperation& operation : edit)
         text += Json{static_cast<int>(operation.op), operation.path, operation.from, operation.value}.dump(
             -1, ' ', false, Json::error_handler_t::replace);
       for (const std::string& name : files_of(edit)) text += hash_of(name);
-      hashes.push_back(last = hash128(bytes_of(text)));
+      hashes += last = hash128(bytes_of(text));
     }
   }
 }
 
-const std::string& EditHashes::at(std::uint32_t step, std::size_t frame) const { return by_step_.at(step).at(frame); }
-const std::string& EditHashes::after(std::uint32_t step) const { return by_step_.at(step).back(); }
+std::string EditHashes::at(std::uint32_t step, std::size_t frame) const {
+  const std::string& hashes = by_step_.at(step);
+  return step == 0 ? "" : hashes.substr(frame * kDigits, kDigits);
+}
+
+std::string EditHashes::after(std::uint32_t step) const {
+  return step == 0 ? "" : at(step, by_step_.at(step).size() / kDigits - 1);
+}
 
 std::vector<std::string> files_of(const Edit& edit) {
   std::vector<std::string> names;
@@ -100,18 +116,23 @@ std::vector<std::filesystem::path> files_of(const Journal& journal) {
   return paths;
 }
 
-std::vector<Edit> merged(const std::vector<const Edit*>& edits) {
-  std::vector<Edit> result;
-  bool may_append = false;
-  for (const Edit* edit : edits) {
-    const bool is_plain = only_replaces_values(*edit);
-    if (is_plain && may_append)
-      result.back().insert(result.back().end(), edit->begin(), edit->end());
-    else
-      result.push_back(*edit);
-    may_append = is_plain;
+void MergedEdits::add(Edit edit) {
+  const bool is_plain = only_replaces_values(edit);
+  if (is_plain && may_append_) {
+    Edit& last = edits_.back();
+    if (edit.size() == 1 && !last.empty() && replaces_number(edit[0]) && replaces_number(last.back()) &&
+        edit[0].path == last.back().path)
+      last.pop_back();
+    std::ranges::move(edit, std::back_inserter(last));
+  } else {
+    edits_.push_back(std::move(edit));
   }
-  return result;
+  may_append_ = is_plain;
+}
+
+std::vector<Edit> MergedEdits::take() {
+  may_append_ = false;
+  return std::exchange(edits_, {});
 }
 
 }  // namespace relook

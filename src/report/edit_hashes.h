@@ -19,12 +19,13 @@ class EditHashes {
   explicit EditHashes(const Journal& journal);
 
   /// XXH3-128 over the kinds, operations and files of all edits up to this frame; "" for the one before any.
-  [[nodiscard]] const std::string& at(std::uint32_t step, std::size_t frame) const;
+  [[nodiscard]] std::string at(std::uint32_t step, std::size_t frame) const;
   /// Of the last frame of a step.
-  [[nodiscard]] const std::string& after(std::uint32_t step) const;
+  [[nodiscard]] std::string after(std::uint32_t step) const;
 
  private:
-  std::vector<std::vector<std::string>> by_step_;  // [step][frame]
+  static constexpr std::size_t kDigits = 32;
+  std::vector<std::string> by_step_;  // [step], kDigits a frame; "" for step 0
 };
 
 /// The files that an edit brings in, as it names them.
@@ -32,8 +33,18 @@ class EditHashes {
 /// The files that a journal's edits bring in and those that these name; what cannot be found is left out.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const Journal& journal);
 
-/// Edits that lead to the same state as `edits` one after the other: neighbours that only replace values inside of
-/// materials, nodes and so on are one, since no order of things depends on them.
-[[nodiscard]] std::vector<Edit> merged(const std::vector<const Edit*>& edits);
+/// Gathers edits that lead to the same state as those added one after the other: neighbours that only replace values
+/// inside of materials, nodes and so on are one, since no order of things depends on them; of numbers that replace one
+/// another the last is enough, so that a wedge is one operation.
+class MergedEdits {
+ public:
+  void add(Edit edit);
+  [[nodiscard]] bool empty() const { return edits_.empty(); }
+  [[nodiscard]] std::vector<Edit> take();
+
+ private:
+  std::vector<Edit> edits_;
+  bool may_append_ = false;
+};
 
 }  // namespace relook

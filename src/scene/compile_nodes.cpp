@@ -229,8 +229,10 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
       }
     }
   }
+  std::vector<ObjectId> now = record.objects;
+  std::ranges::sort(now);
   for (ObjectId id : before)
-    if (std::find(record.objects.begin(), record.objects.end(), id) == record.objects.end()) {
+    if (!std::ranges::binary_search(now, id)) {
       Object gone = scene_.object(id);
       gone.alive = false;
       set_object(id, std::move(gone));
@@ -242,6 +244,11 @@ ObjectId Compilation::object_slot(const std::string& node, std::uint32_t primiti
   const auto [slot, is_new] =
       index_.objects.try_emplace(key, ObjectId(static_cast<std::uint32_t>(scene_.objects.size())));
   if (is_new) {
+    if (notes_history_ && scene_.objects.size() >= index_.first_objects + kMostAddedObjects) {
+      index_.objects.erase(slot);
+      fail(node_pointer(node) + "/mesh", "with this, edits have added more than " + std::to_string(kMostAddedObjects) +
+                                             " objects to the scene, the most that they may");
+    }
     Object object;
     object.node = node;
     object.primitive = primitive;

@@ -39,10 +39,14 @@ struct SceneIndex {
   std::unordered_map<std::string, MaterialId> materials;
   MaterialId default_material;                          // of primitives without a material
   std::unordered_map<std::uint64_t, ObjectId> objects;  // by key
+  std::size_t first_objects = 0;                        // slots of the scene as it was opened
   std::unordered_map<std::string, LightId> lights;      // by node
   std::unordered_map<TouchedEntity, std::vector<TouchedEntity>, TouchedEntityHash> references;
   std::unordered_map<TouchedEntity, std::unordered_set<TouchedEntity, TouchedEntityHash>, TouchedEntityHash> users;
 };
+
+/// The most objects, primitives times instances, that edits may add to a scene. Removed ones keep their slots.
+inline constexpr std::size_t kMostAddedObjects = 500'000;
 
 /// An entry of the look document to compile.
 struct CompiledEntity {

@@ -27,6 +27,7 @@ void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& sc
   Compilation(document, pyramids, scene, index, document.file).run_first(materials);
   scene.materials.emplace_back();
   Compilation(document, pyramids, scene, index, document.file).run_first(others);
+  index.first_objects = scene.objects.size();
 }
 
 }  // namespace

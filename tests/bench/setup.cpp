@@ -88,8 +88,8 @@ void keep_faster(TimedStep& best, TimedStep step) {
 
 Edit whole_edit(const JournalStep& step) {
   Edit whole = step.edit;
-  for (const auto* frames : {&step.drag, &step.wedge})
-    for (const Edit& entry : *frames) whole.insert(whole.end(), entry.begin(), entry.end());
+  if (!step.drag.empty() || !step.wedge.empty())
+    for (const Edit& entry : frames_of(step)) whole.insert(whole.end(), entry.begin(), entry.end());
   return whole;
 }
 
