@@ -44,7 +44,7 @@ LookDocument small_document() {
   document.order[0] = {"Red"};
   document.order[6] = {"A", "B"};
   document.instances["B"] = {Transform(), Transform(2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 2, 3, 1)};
-  document.cameras = {{"Eye", {{"node", "A"}, {"camera", {{"type", "perspective"}}}}}};
+  document.cameras = {{"Eye", {{"node", "A"}, {"camera", {{"type", "perspective"}}}, {"index", 0}}}};
   document.assets = std::make_shared<Assets>();
   document.assets->meshes.push_back(triangle_mesh());
   document.assets->mesh_primitives["Triangle"] = {MeshId(0)};

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "look_fixture.h"
 #include "scene/look_names.h"
 
@@ -34,6 +36,27 @@ TEST(Look, repeated_names_get_the_first_free_suffix) {
   const LookDocument document = make_look_document(
       imported_of(R"({"materials": [{"name": "A"}, {"name": "A"}, {"name": "A_2"}, {"name": "A"}]})"));
   EXPECT_EQ(document.order[0], (std::vector<std::string>{"A", "A_2", "A_2_2", "A_3"}));
+}
+
+TEST(Look, any_number_of_equal_names_takes_two_looks_each) {
+  constexpr std::size_t kNames = 200'000;
+  UniqueNames unique;
+  EXPECT_EQ(unique.give("A_7"), "A_7");
+  std::string last;
+  for (std::size_t i = 0; i < kNames; ++i) last = unique.give("A");
+  EXPECT_EQ(last, "A_200001");
+  EXPECT_LE(unique.probes(), 2 * kNames + 2);
+}
+
+TEST(Look, names_given_are_those_of_a_search_from_two) {
+  std::set<std::string> taken;
+  UniqueNames unique([](const std::string& name) { return name == "B_3"; });
+  for (const char* wanted : {"A", "A_2", "A", "A_2", "A", "B", "B", "A_2_2", "B", "B_2", "B", "A_3", "A_4", "A"}) {
+    const std::string expected = unique_name(
+        wanted, [&](const std::string& name) { return name == "B_3" || taken.contains(name); });
+    taken.insert(expected);
+    EXPECT_EQ(unique.give(wanted), expected);
+  }
 }
 
 TEST(Look, control_bytes_leave_names) {

@@ -146,6 +146,18 @@ Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
   return mesh;
 }
 
+/// As make_look_document() leaves them: edits look cameras up by index and by name.
+Json read_cameras(const JsonView& cameras) {
+  cameras.require_object();
+  for (const auto& [name, unused] : cameras.value().items()) {
+    const JsonView camera = cameras.at(name);
+    (void)camera.at("node").text();
+    camera.at("camera").require_object();
+    (void)camera.at("index").integer(0, kMostValues);
+  }
+  return cameras.value();
+}
+
 void read_names(const JsonView& names, LookDocument& document, Assets& assets) {
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const JsonView order = names.at("order").at(section_name(static_cast<Section>(s)));
@@ -162,8 +174,7 @@ void read_names(const JsonView& names, LookDocument& document, Assets& assets) {
       ids.emplace_back(
           static_cast<std::uint32_t>(group.at(i).integer(0, static_cast<std::int64_t>(assets.meshes.size()) - 1)));
   }
-  names.at("cameras").require_object();
-  document.cameras = names.at("cameras").value();
+  document.cameras = read_cameras(names.at("cameras"));
   document.file = names.at("file").text();
 }
 

@@ -16,16 +16,13 @@ Renames renames_for(const LookDocument& part, const LookDocument& document, cons
   Renames renames;
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const std::string section(section_name(static_cast<Section>(s)));
-    std::set<std::string> given;
-    for (const auto& item : part.look[section].items()) {
-      const std::string name = unique_name(prefix + item.key(), [&](const std::string& candidate) {
-        const bool is_geometry = section == "meshes" && document.assets->mesh_primitives.contains(candidate);
-        return given.contains(candidate) || document.look[section].contains(candidate) || is_geometry ||
-               (section == "nodes" && document.instances.contains(candidate));
-      });
-      given.insert(name);
-      renames[s].emplace(item.key(), name);
-    }
+    UniqueNames unique([&](const std::string& candidate) {
+      const bool is_geometry = section == "meshes" && document.assets->mesh_primitives.contains(candidate);
+      return document.look[section].contains(candidate) || is_geometry ||
+             (section == "nodes" && document.instances.contains(candidate));
+    });
+    for (const auto& item : part.look[section].items())
+      renames[s].emplace(item.key(), unique.give(prefix + item.key()));
   }
   return renames;
 }

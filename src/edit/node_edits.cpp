@@ -66,6 +66,7 @@ void Transaction::rename_node(const std::string& from, const std::string& to) {
 void Transaction::copy_descendants(const std::string& copy, const PatchPlace& place) {
   std::set<std::string> copied{copy};
   std::vector<std::string> todo{copy};
+  UniqueNames unique([&](const std::string& candidate) { return find({"nodes", candidate}) != nullptr; });
   while (!todo.empty()) {
     const std::string node = std::move(todo.back());
     todo.pop_back();
@@ -76,9 +77,7 @@ void Transaction::copy_descendants(const std::string& copy, const PatchPlace& pl
       if (!copied.insert(child).second)
         throw InputError(place.file, place.where, "a node cannot be copied over one of its own descendants");
       const std::string last = child.substr(child.rfind('/') + 1);
-      const std::string name = unique_name(copy + "/" + last, [&](const std::string& candidate) {
-        return find({"nodes", candidate}) != nullptr;
-      });
+      const std::string name = unique.give(copy + "/" + last);
       count_copy(*original, {"nodes", name}, place);
       add_entry("nodes", name, Json(*original));
       copied.insert(name);

@@ -102,8 +102,6 @@ CacheAnswer compile(CacheContent& content, std::unique_ptr<SceneState>& state) {
     state = std::make_unique<SceneState>(std::move(content.document), content.camera, content.pyramids);
   } catch (const InputError& error) {
     return {CacheFault::damaged, "look.json", error.what()};
-  } catch (const Json::exception&) {  // not even of the form that every look document has
-    return {CacheFault::damaged, "look.json", "no look document"};
   }
   if (state->scene().objects.size() != content.objects || state->scene().light_order.size() != content.lights)
     return {CacheFault::damaged, "look.json", "the look document does not have the objects and lights of the paths"};

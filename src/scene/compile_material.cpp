@@ -245,8 +245,7 @@ Displacement compile_displacement(const CompileContext& context, const Json& val
   return displacement;
 }
 
-Light compile_light(const CompileContext& context, const std::string& name, const Json& value,
-                    const std::string& pointer) {
+Light compile_light(std::string_view file, const std::string& name, const Json& value, const std::string& pointer) {
   constexpr std::array<std::string_view, 3> kKinds{"point", "spot", "directional"};
   Light light;
   light.light = name;
@@ -258,7 +257,7 @@ Light compile_light(const CompileContext& context, const std::string& name, cons
   light.inner_cone = float_of(value["spot"]["innerConeAngle"]);
   light.outer_cone = float_of(value["spot"]["outerConeAngle"]);
   if (!(light.inner_cone < light.outer_cone))
-    throw LookError(context.file, pointer + "/spot/innerConeAngle", "the inner cone is not inside the outer cone");
+    throw LookError(file, pointer + "/spot/innerConeAngle", "the inner cone is not inside the outer cone");
   return light;
 }
 
@@ -272,19 +271,19 @@ Environment compile_environment(const CompileContext& context, const Json& value
   return environment;
 }
 
-void check_texture_entity(const CompileContext& context, Section section, const Json& value,
+void check_texture_entity(const LookDocument& document, std::string_view file, Section section, const Json& value,
                           const std::string& pointer) {
   if (section == Section::samplers)
     for (const char* key : {"wrapS", "wrapT"}) {
       const int wrap = value.value(key, 10497);
       if (wrap != 10497 && wrap != 33071 && wrap != 33648)
-        throw LookError(context.file, pointer + "/" + key,
+        throw LookError(file, pointer + "/" + key,
                         std::to_string(wrap) + " is not one of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
     }
   if (section != Section::images) return;
   const std::string& content = value["extras"]["relook"].value("content", "");
-  if (!context.document.assets->images.contains(content))
-    throw LookError(context.file, pointer, "an image needs a \"uri\", or the \"content\" of another image");
+  if (!document.assets->images.contains(content))
+    throw LookError(file, pointer, "an image needs a \"uri\", or the \"content\" of another image");
 }
 
 }  // namespace relook

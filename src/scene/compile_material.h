@@ -22,7 +22,7 @@ struct CompileContext {
 [[nodiscard]] Displacement compile_displacement(const CompileContext& context, const Json& value,
                                                 const std::string& pointer);
 /// Everything of a light but its node and place.
-[[nodiscard]] Light compile_light(const CompileContext& context, const std::string& name, const Json& value,
+[[nodiscard]] Light compile_light(std::string_view file, const std::string& name, const Json& value,
                                   const std::string& pointer);
 [[nodiscard]] Environment compile_environment(const CompileContext& context, const Json& value);
 
@@ -30,7 +30,7 @@ struct CompileContext {
 void decode_images(const LookDocument& document, PyramidStore& pyramids);
 
 /// Checks a texture, sampler or image that no slot may use yet.
-void check_texture_entity(const CompileContext& context, Section section, const Json& value,
+void check_texture_entity(const LookDocument& document, std::string_view file, Section section, const Json& value,
                           const std::string& pointer);
 
 /// The member along a path of keys, or nullptr.

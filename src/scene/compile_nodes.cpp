@@ -187,13 +187,10 @@ bool Compilation::visit_node(const std::string& name, const Json& node, NodeReco
 }
 
 /// Local matrices of EXT_mesh_gpu_instancing, or nullptr.
-const std::vector<Transform>* Compilation::instances_of(const std::string& name, const Json& node) const {
+const std::vector<Transform>* Compilation::instances_of(const Json& node) const {
   const Json* key = member_at(node, {"extras", "relook", "instances"});
   if (key == nullptr) return nullptr;
-  const auto found = document_.instances.find(key->get_ref<const std::string&>());
-  if (found == document_.instances.end())
-    fail(node_pointer(name) + "/extras/relook/instances", "the scene has no such instances");
-  return &found->second;
+  return &document_.instances.find(key->get_ref<const std::string&>())->second;
 }
 
 void Compilation::update_objects(const std::string& name, const Json& node, NodeRecord& record) {
@@ -207,7 +204,7 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
     if (const Json* displacement = member_at(node, {"extras", "relook", "displacement"}))
       object.displacement =
           compile_displacement(context_, *displacement, node_pointer(name) + "/extras/relook/displacement");
-    const std::vector<Transform>* instances = instances_of(name, node);
+    const std::vector<Transform>* instances = instances_of(node);
     const std::size_t instance_count = instances == nullptr ? 1 : instances->size();
     for (MeshId mesh_id : document_.assets->mesh_primitives.find(geometry)->second) {
       object.mesh = mesh_id;
@@ -229,6 +226,7 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
       }
     }
   }
+  if (before.empty()) return;
   std::vector<ObjectId> now = record.objects;
   std::ranges::sort(now);
   for (ObjectId id : before)
@@ -290,7 +288,7 @@ void Compilation::update_light(const std::string& name, const Json& node, NodeRe
   }
   const auto& light_name = (*punctual)["light"].get_ref<const std::string&>();
   Light light =
-      compile_light(context_, light_name, document_.look["lights"][light_name], "/lights/" + escape_token(light_name));
+      compile_light(context_.file, light_name, document_.look["lights"][light_name], "/lights/" + escape_token(light_name));
   light.node = name;
   const Imath::V3d back(record.world[2][0], record.world[2][1], record.world[2][2]);
   const double length = std::sqrt(back.x * back.x + back.y * back.y + back.z * back.z);

@@ -2,21 +2,12 @@
 
 #include <algorithm>
 
+#include "scene/look_check.h"
 #include "scene/look_names.h"
 #include "scene/look_schema.h"
 
 namespace relook {
 namespace {
-
-std::string pointer_of(const TouchedEntity& entity) {
-  return "/" + entity.section + (entity.name.empty() ? "" : "/" + escape_token(entity.name));
-}
-
-const Schema& schema_of_entity(const TouchedEntity& entity) {
-  if (entity.section == "scene") return scene_schema();
-  if (entity.section == "extensions") return extensions_schema();
-  return schema_of(*section_of(entity.section));
-}
 
 /// Whether a change of an entity's value changes what its users compile to (nodes reach their children themselves).
 bool reaches_users(const std::string& section) { return section != "materials" && section != "nodes"; }
@@ -36,11 +27,13 @@ std::vector<CompiledEntity> all_entities(const LookDocument& document) {
 }
 
 SceneDelta Compilation::run(const std::vector<TouchedEntity>& touched) {
-  check_root();
-  for (const TouchedEntity& entity : touched) check_name(entity);
+  check_sections(document_, context_.file);
+  for (const TouchedEntity& entity : touched) check_entity_name(entity, context_.file);
+  const Entities entities = with_users(touched);
+  check(entities);
   old_order_ = scene_.light_order;
   try {
-    compile(with_users(touched));
+    compile(entities);
     return delta();
   } catch (...) {
     roll_back();
@@ -51,16 +44,19 @@ SceneDelta Compilation::run(const std::vector<TouchedEntity>& touched) {
 void Compilation::run_first(const std::vector<CompiledEntity>& entities) {
   notes_history_ = false;
   require(std::ranges::is_sorted(entities, {}, &Entity::place), "entities come in the order of their places");
-  check_root();
-  for (const Entity& entity : entities) check_name(entity.place);
   compile(entities);
+}
+
+/// All of them before any is compiled: what an entity refers to may be touched as well.
+void Compilation::check(const Entities& entities) const {
+  for (const Entity& entity : entities)
+    if (entity.value != nullptr) check_entity(document_, entity.place, *entity.value, context_.file);
+  for (const Entity& entity : entities)
+    if (entity.is_touched && entity.place.section == "extensions") check_variants();
 }
 
 void Compilation::compile(const Entities& entities) {
   ++index_.runs;
-  for (const Entity& entity : entities) check_entity(entity);
-  for (const Entity& entity : entities)
-    if (entity.is_touched && entity.place.section == "extensions") check_variants();
   for (const Entity& entity : entities) {
     if (entity.place.section == "materials" && entity.value != nullptr) update_material(entity);
     if (entity.place.section == "scene") update_scene_entry();
@@ -73,26 +69,6 @@ void Compilation::compile(const Entities& entities) {
 
 void Compilation::fail(const std::string& pointer, const std::string& what) const {
   throw LookError(context_.file, pointer, what);
-}
-
-void Compilation::check_root() const {
-  const Json& look = document_.look;
-  if (!look.is_object()) fail("", "the look document must stay an object");
-  for (std::size_t s = 0; s < kSectionCount; ++s) {
-    const std::string section(section_name(static_cast<Section>(s)));
-    const auto found = look.find(section);
-    if (found == look.end() || !found->is_object()) fail("/" + section, "must stay an object, keyed by name");
-  }
-  if (!look.contains("scene")) fail("/scene", "the scene entry cannot be removed");
-  for (const auto& item : look.items())
-    if (!section_of(item.key()) && item.key() != "scene" && item.key() != "extensions")
-      fail("/" + escape_token(item.key()), "unknown key \"" + item.key() + "\"");
-}
-
-void Compilation::check_name(const TouchedEntity& entity) const {
-  if (!section_of(entity.section)) return;
-  if (entity.name.empty()) fail("/" + entity.section + "/", "a name must not be empty");
-  if (printable(entity.name) != entity.name) fail(pointer_of(entity), "a name must not contain control characters");
 }
 
 const Json* Compilation::value_of(const TouchedEntity& entity) const {
@@ -122,37 +98,15 @@ Compilation::Entities Compilation::with_users(const std::vector<TouchedEntity>& 
   return entities;
 }
 
-void Compilation::check_entity(const Entity& entity) const {
-  const Json* value = entity.value;
-  if (value == nullptr) return;
-  const std::string pointer = pointer_of(entity.place);
-  check_against_schema(schema_of_entity(entity.place), *value, document_, context_.file, pointer);
-  const std::optional<Section> section = section_of(entity.place.section);
-  if (!section) return;
-  if (*section == Section::lights) (void)compile_light(context_, entity.place.name, *value, pointer);
-  if (*section == Section::images || *section == Section::samplers)
-    check_texture_entity(context_, *section, *value, pointer);
-  if (*section != Section::meshes) return;
-  const std::string& geometry = (*value)["extras"]["relook"].value("geometry", "");
-  const auto primitives = document_.assets->mesh_primitives.find(geometry);
-  if (primitives == document_.assets->mesh_primitives.end())
-    fail(pointer + "/extras/relook/geometry", "the scene has no geometry \"" + geometry + "\"");
-  for (MeshId id : primitives->second)
-    if (!value->contains("primitives") ||
-        document_.assets->meshes[id.index()].primitive >= (*value)["primitives"].size())
-      fail(pointer + "/primitives", "geometry \"" + geometry + "\" has more primitives");
-}
-
 void Compilation::check_variants() const {
   for (const auto& mesh : document_.look.at("meshes").items())
-    check_against_schema(schema_of(Section::meshes), mesh.value(), document_, context_.file,
-                         "/meshes/" + escape_token(mesh.key()));
+    check_entity_values(document_, {"meshes", mesh.key()}, mesh.value(), context_.file);
 }
 
 void Compilation::update_references(const Entity& entity) {
   std::vector<TouchedEntity> references;
   if (entity.value != nullptr)
-    visit_names(schema_of_entity(entity.place), *entity.value, [&](Target target, const Json& name) {
+    visit_names(schema_of_entity(entity.place.section), *entity.value, [&](Target target, const Json& name) {
       if (target == Target::cameras || target == Target::variants) return;
       references.push_back({std::string(section_name(static_cast<Section>(target))), name.get<std::string>()});
     });
@@ -181,7 +135,7 @@ void Compilation::set_references(const TouchedEntity& entity, std::vector<Touche
 
 void Compilation::update_material(const Entity& entity) {
   const std::string& name = entity.place.name;
-  Material material = compile_material(context_, name, *entity.value, pointer_of(entity.place));
+  Material material = compile_material(context_, name, *entity.value, entity_pointer(entity.place));
   const auto [slot, is_new] =
       index_.materials.try_emplace(name, MaterialId(static_cast<std::uint32_t>(scene_.materials.size())));
   if (is_new) {

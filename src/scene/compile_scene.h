@@ -66,7 +66,7 @@ class Compilation {
 
   /// What was touched and its users. Throws InputError with scene and index as before.
   SceneDelta run(const std::vector<TouchedEntity>& touched);
-  /// Entities of a new scene, of increasing places and without users as yet. Notes nothing of what was there before: an
+  /// Entities of a new scene, checked (look_check.h), of increasing places and without users as yet. Notes nothing of what was there before: an
   /// error ends the scene.
   void run_first(const std::vector<CompiledEntity>& entities);
 
@@ -80,12 +80,10 @@ class Compilation {
   };
 
   // compile_scene.cpp
-  void check_root() const;
-  void check_name(const TouchedEntity& entity) const;
+  void check(const Entities& entities) const;
   void compile(const Entities& entities);
   [[nodiscard]] Entities with_users(const std::vector<TouchedEntity>& touched) const;
   [[nodiscard]] const Json* value_of(const TouchedEntity& entity) const;
-  void check_entity(const Entity& entity) const;
   void check_variants() const;
   void update_references(const Entity& entity);
   void set_references(const TouchedEntity& entity, std::vector<TouchedEntity> references);
@@ -104,7 +102,7 @@ class Compilation {
   void find_depths(std::vector<NodeVisit>& visits) const;
   void visit_subtree(const NodeVisit& top);
   bool visit_node(const std::string& name, const Json& node, NodeRecord& record);
-  [[nodiscard]] const std::vector<Transform>* instances_of(const std::string& name, const Json& node) const;
+  [[nodiscard]] const std::vector<Transform>* instances_of(const Json& node) const;
   void update_objects(const std::string& name, const Json& node, NodeRecord& record);
   void update_light(const std::string& name, const Json& node, NodeRecord& record);
   ObjectId object_slot(const std::string& node, std::uint32_t primitive, std::uint32_t instance);

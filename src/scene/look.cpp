@@ -2,9 +2,7 @@
 // what relook does not support is left out.
 #include "scene/look.h"
 
-#include <algorithm>
-#include <set>
-
+#include "scene/look_check.h"
 #include "scene/look_names.h"
 #include "scene/look_schema.h"
 
@@ -26,15 +24,14 @@ const Json& gltf_array(const Json& gltf, Section section) {
 
 /// One unique printable name per item of a glTF array.
 std::vector<std::string> names_of(const Json& items, std::string_view noun) {
-  std::set<std::string> taken;
+  UniqueNames unique;
   std::vector<std::string> names;
+  names.reserve(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) {
     const Json& given = member_or_empty(items[i], "name");
     std::string name = given.is_string() ? printable(given.get_ref<const std::string&>()) : "";
     if (name.empty()) name = std::string(noun) + "_" + std::to_string(i);
-    name = unique_name(std::move(name), [&](const std::string& candidate) { return taken.contains(candidate); });
-    taken.insert(name);
-    names.push_back(std::move(name));
+    names.push_back(unique.give(std::move(name)));
   }
   return names;
 }
@@ -60,7 +57,8 @@ std::vector<std::size_t> active_nodes(const Json& gltf) {
   return active;
 }
 
-void name_cameras(const Json& gltf, const std::vector<std::size_t>& active, LookDocument& document) {
+/// Their names in the order of the file.
+std::vector<std::string> name_cameras(const Json& gltf, const std::vector<std::size_t>& active, LookDocument& document) {
   const Json& cameras = member_or_empty(gltf, "cameras");
   const std::vector<std::string> names = names_of(cameras, "camera");
   document.cameras = Json::object();
@@ -71,6 +69,7 @@ void name_cameras(const Json& gltf, const std::vector<std::size_t>& active, Look
     if (camera.is_number_unsigned())
       document.cameras[names.at(camera)]["node"] = document.order[static_cast<std::size_t>(Section::nodes)][*node];
   }
+  return names;
 }
 
 void name_variants(const Json& gltf, LookDocument& document) {
@@ -80,15 +79,35 @@ void name_variants(const Json& gltf, LookDocument& document) {
     document.look["extensions"]["KHR_materials_variants"]["variants"] = names_of(variants, "variant");
 }
 
+/// extras.relook, made if need be; null where the file has something else in its place, which check_values() refuses.
+Json* relook_extras(Json& value) {
+  Json& extras = value["extras"];
+  if (extras.is_null()) extras = Json::object();
+  Json& relook = extras["relook"];
+  if (relook.is_null()) relook = Json::object();
+  return relook.is_object() ? &relook : nullptr;
+}
+
+void set_relook_extra(Json& value, const char* key, const std::string& name) {
+  if (Json* relook = relook_extras(value)) (*relook)[key] = name;
+}
+
+/// name_indices() for nodes' cameras, whose table has no order: in one step each, for any number of both.
+void name_camera(const std::vector<std::string>& cameras, Json& node) {
+  const Json& index = member_or_empty(node, "camera");
+  if (index.is_number_unsigned() && index.get<std::size_t>() < cameras.size())
+    node["camera"] = cameras[index.get<std::size_t>()];
+}
+
 /// Copies one glTF item into the look document under its name.
 void add_entity(LookDocument& document, Section section, std::size_t index, Json value) {
   const std::string& name = document.order[static_cast<std::size_t>(section)][index];
   cut_to_schema(schema_of(section), value);
   if (value.is_object()) value.erase("name");
   name_indices(document, section, value);
-  if (section == Section::images) value["extras"]["relook"]["content"] = name;
-  if (section == Section::meshes) value["extras"]["relook"]["geometry"] = name;
-  if (section == Section::nodes && document.instances.contains(name)) value["extras"]["relook"]["instances"] = name;
+  if (section == Section::images) set_relook_extra(value, "content", name);
+  if (section == Section::meshes) set_relook_extra(value, "geometry", name);
+  if (section == Section::nodes && document.instances.contains(name)) set_relook_extra(value, "instances", name);
   fill_defaults(section, value);
   document.look[std::string(section_name(section))][name] = std::move(value);
 }
@@ -157,7 +176,7 @@ LookDocument make_look_document(ImportedGltf imported) {
   }
   move_assets(imported, document);
   const std::vector<std::size_t> active = active_nodes(gltf);
-  name_cameras(gltf, active, document);
+  const std::vector<std::string> cameras = name_cameras(gltf, active, document);
   name_variants(gltf, document);
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const auto section = static_cast<Section>(s);
@@ -165,9 +184,14 @@ LookDocument make_look_document(ImportedGltf imported) {
     const Json& items = gltf_array(gltf, section);
     for (std::size_t i = 0; i < items.size(); ++i) add_entity(document, section, i, items[i]);
   }
-  for (std::size_t index : active) add_entity(document, Section::nodes, index, gltf["nodes"][index]);
+  for (std::size_t index : active) {
+    Json node = gltf["nodes"][index];
+    name_camera(cameras, node);
+    add_entity(document, Section::nodes, index, std::move(node));
+  }
   document.look["scene"] = active_scene(gltf);
   fill_from_schema(scene_schema(), document.look["scene"]);
+  check_values(document);
   return document;
 }
 

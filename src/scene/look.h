@@ -28,7 +28,7 @@ struct LookDocument {
   std::string file;  // for messages
 };
 
-[[nodiscard]] LookDocument make_look_document(ImportedGltf imported);
+[[nodiscard]] LookDocument make_look_document(ImportedGltf imported);  // LookError: what the importer cannot tell
 
 /// Fills the defaults of one value of a section in place (an added material, node, ...). Idempotent.
 void fill_defaults(Section section, Json& value);

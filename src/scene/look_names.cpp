@@ -24,19 +24,34 @@ std::string unique_name(std::string wanted, const std::function<bool(const std::
   }
 }
 
-namespace {
-
-/// The name of glTF index `index`, if the scene file has that many.
-const std::string* name_of_index(const LookDocument& document, Section section, std::uint64_t index) {
-  const auto& order = document.order[static_cast<std::size_t>(section)];
-  return index < order.size() ? &order[index] : nullptr;
+bool UniqueNames::take(const std::string& name) {
+  ++probes_;
+  if (given_.contains(name) || (is_taken_ && is_taken_(name))) return false;
+  return given_.insert(name).second;
 }
+
+std::string UniqueNames::give(std::string wanted) {
+  if (take(wanted)) return wanted;
+  std::size_t& suffix = next_suffix_.try_emplace(wanted, 2).first->second;
+  for (;; ++suffix) {
+    std::string candidate = wanted + "_" + std::to_string(suffix);
+    if (take(candidate)) return candidate;
+  }
+}
+
+namespace {
 
 const std::string* camera_of_index(const LookDocument& document, std::uint64_t index) {
   if (!document.cameras.is_object()) return nullptr;
   for (auto camera = document.cameras.begin(); camera != document.cameras.end(); ++camera)
     if (camera->value("index", std::uint64_t{0}) == index) return &camera.key();
   return nullptr;
+}
+
+/// The name of glTF index `index`, if the scene file has that many.
+const std::string* name_of_index(const LookDocument& document, Section section, std::uint64_t index) {
+  const auto& order = document.order[static_cast<std::size_t>(section)];
+  return index < order.size() ? &order[index] : nullptr;
 }
 
 }  // namespace

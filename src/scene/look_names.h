@@ -4,6 +4,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "scene/look.h"
 #include "scene/look_schema.h"
@@ -12,6 +15,24 @@ namespace relook {
 
 /// `wanted` if it is free, else with the first free of "_2", "_3", ...
 [[nodiscard]] std::string unique_name(std::string wanted, const std::function<bool(const std::string&)>& is_taken);
+
+/// Gives many names: each `wanted` if it is free, else as unique_name() would. A search goes on where the last one for the
+/// same name ended, so that any number of equal names takes linear time; what is taken must stay taken.
+class UniqueNames {
+ public:
+  /// `is_taken`: besides the names given so far.
+  explicit UniqueNames(std::function<bool(const std::string&)> is_taken = {}) : is_taken_(std::move(is_taken)) {}
+  [[nodiscard]] std::string give(std::string wanted);
+  [[nodiscard]] std::size_t probes() const { return probes_; }  // names looked up so far
+
+ private:
+  bool take(const std::string& name);  // false if it is taken
+
+  std::function<bool(const std::string&)> is_taken_;
+  std::unordered_set<std::string> given_;
+  std::unordered_map<std::string, std::size_t> next_suffix_;  // of names wanted more than once
+  std::size_t probes_ = 0;
+};
 
 /// The section called `name`, if there is one.
 [[nodiscard]] std::optional<Section> section_of(std::string_view name);

@@ -2,6 +2,7 @@
 // of the data.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "scene/look_schema.h"
 
@@ -51,6 +52,15 @@ struct Place {
     return parent->text() + "/" + (key.empty() ? std::to_string(index) : escape_token(key));
   }
 };
+
+std::vector<std::string> variant_names(const LookDocument& document) {
+  const Json::json_pointer place("/extensions/KHR_materials_variants/variants");
+  std::vector<std::string> names;
+  if (!document.look.contains(place) || !document.look[place].is_array()) return names;
+  for (const Json& item : document.look[place])
+    if (item.is_string()) names.push_back(item);
+  return names;
+}
 
 /// One check of one value with its place.
 class Checker {
@@ -178,15 +188,25 @@ class Checker {
       fail(place,
            "expected the name of a " + std::string(target_noun(target)) + ", got " + std::string(type_noun(value)));
     const auto& word = value.get_ref<const std::string&>();
-    if (name_exists(document_, target, word)) return;
+    if (target == Target::variants ? is_variant(word) : name_exists(document_, target, word)) return;
     LookError error(file_, place.text(), missing_name(document_, target, word));
     if (target < Target::cameras)
       error.missing = "/" + std::string(section_name(static_cast<Section>(target))) + "/" + escape_token(word);
     throw error;
   }
 
+  /// Of a primitive that maps many variants, every one is looked up: the document's names are put in order once.
+  [[nodiscard]] bool is_variant(const std::string& word) const {
+    if (!variants_) {
+      variants_ = variant_names(document_);
+      std::ranges::sort(*variants_);
+    }
+    return std::ranges::binary_search(*variants_, word);
+  }
+
   const LookDocument& document_;
   std::string_view file_;
+  mutable std::optional<std::vector<std::string>> variants_;  // sorted
 };
 
 const Json* names_of(const LookDocument& document, Target target) {
@@ -194,15 +214,6 @@ const Json* names_of(const LookDocument& document, Target target) {
   if (target == Target::variants) return nullptr;
   const auto section = document.look.find(section_name(static_cast<Section>(target)));
   return section == document.look.end() || !section->is_object() ? nullptr : &*section;
-}
-
-std::vector<std::string> variant_names(const LookDocument& document) {
-  const Json::json_pointer place("/extensions/KHR_materials_variants/variants");
-  std::vector<std::string> names;
-  if (!document.look.contains(place) || !document.look[place].is_array()) return names;
-  for (const Json& item : document.look[place])
-    if (item.is_string()) names.push_back(item);
-  return names;
 }
 
 }  // namespace

@@ -4,14 +4,26 @@
 
 #include "base/parallel.h"
 #include "scene/compile_scene.h"
+#include "scene/look_check.h"
 #include "scene/look_schema.h"
 
 namespace relook {
 
 namespace {
 
+/// All entities of the document, checked before any is compiled: materials read textures, textures images.
+std::vector<CompiledEntity> checked_entities(const LookDocument& document) {
+  std::vector<CompiledEntity> entities = all_entities(document);
+  for (const CompiledEntity& entity : entities) {
+    check_entity_name(entity.place, document.file);
+    check_entity(document, entity.place, *entity.value, document.file);
+  }
+  return entities;
+}
+
 /// Into a scene that has its assets and its camera alone.
 void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index) {
+  const std::vector<CompiledEntity> entities = checked_entities(document);
   decode_images(document, pyramids);
   // The default material comes after those of the document.
   const std::size_t count = document.look.at("materials").size();
@@ -22,8 +34,8 @@ void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& sc
   index.references.reserve(nodes);
   scene.objects.reserve(nodes);  // one a node, most often
   std::vector<CompiledEntity> materials, others;
-  for (CompiledEntity& entity : all_entities(document))
-    (entity.place.section == "materials" ? materials : others).push_back(std::move(entity));
+  for (const CompiledEntity& entity : entities)
+    (entity.place.section == "materials" ? materials : others).push_back(entity);
   Compilation(document, pyramids, scene, index, document.file).run_first(materials);
   scene.materials.emplace_back();
   Compilation(document, pyramids, scene, index, document.file).run_first(others);
@@ -40,6 +52,7 @@ SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<Pyr
   if (pyramids_ == nullptr) pyramids_ = std::make_shared<PyramidStore>();
   scene_.assets = document_.assets;
   scene_.camera = std::move(camera);
+  check_sections(document_, document_.file);
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const auto section = static_cast<Section>(s);
     for (Json& value : document_.look.at(std::string(section_name(section)))) fill_defaults(section, value);
