@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "help_footer.h"
 #include "needless_options.h"
+#include "scene/import_memory.h"
 #include "values.h"
 #include "version_text.h"
 
@@ -31,7 +32,7 @@ void add_footers(CLI::App& app, const std::string& verb) {
 /// Options that need our own syntax, as text until the whole line is read.
 struct RawTexts {
   std::string report = "html";
-  std::string resolution, memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
+  std::string resolution, memory, import_memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
   std::string json;  // compare, plan; "-": to stdout
   std::optional<std::string> steps;
   std::vector<const CLI::Option*> inspection_view;  // VIEW of inspect
@@ -49,6 +50,8 @@ void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_flag("--log-json", arguments.log_json, "Warnings, errors and progress on stderr as one JSON object a line");
   verb.add_flag("--overwrite", arguments.overwrite,
                 "Replace another run or cache, or another file, that is where the output goes; never an input");
+  verb.add_option("--import-memory", raw.import_memory,
+                  "Most memory that scenes' and caches' images and geometry may unpack to, like 4G; 2G");
   verb.add_option("--trace", arguments.trace, "File to write: what took how long, for Perfetto (Chrome trace events)");
 }
 
@@ -263,6 +266,7 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.resolution.empty())
     std::tie(arguments.view.width, arguments.view.height) = parse_resolution("--resolution", raw.resolution);
   if (!raw.memory.empty()) arguments.structures.memory_bytes = parse_size("--memory", raw.memory);
+  if (!raw.import_memory.empty()) set_import_memory(parse_size("--import-memory", raw.import_memory));
   if (!raw.disk.empty()) arguments.structures.disk_bytes = parse_size("--disk", raw.disk);
   if (!raw.ray_trees.empty())
     arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);

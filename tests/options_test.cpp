@@ -162,7 +162,8 @@ TEST_F(Options, in_common_are_taken_by_every_verb) {
   for (std::vector<std::string> command : commands) {
     command = filled(command);
     for (const std::string option :
-         {"--threads", "1", "--quiet", "--progress", "none", "--json", "--log-json", "--overwrite"})
+         {"--threads", "1", "--quiet", "--progress", "none", "--json", "--log-json", "--overwrite",
+          "--import-memory", "1G"})
       command.push_back(option);
     command.insert(command.end(), {"--trace", at("trace.json")});
     const ProgramResult result = relook(command);

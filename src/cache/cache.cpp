@@ -15,6 +15,7 @@
 #include "cache/manifest.h"
 #include "cache/scene_parts.h"
 #include "cache/tunnel_parts.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
@@ -24,7 +25,7 @@ struct Reading {
   std::filesystem::path path;
   Manifest manifest;
   CacheContent content;
-  std::shared_ptr<Assets> assets = std::make_shared<Assets>();
+  std::shared_ptr<Assets> assets = counted_assets();
   std::vector<std::size_t> hits_of_path;
   bool uses_trees = false;  // otherwise of trees nothing but the hash of the file is checked
   CacheUsers users;
@@ -105,6 +106,8 @@ Finding read_part(const PartFile& part, Reading& reading) {
   } catch (const CacheDamage& damage) {
     answer.fault = damage.fault;
     answer.detail = damage.what();
+  } catch (const ResourceError& error) {
+    throw ResourceError((reading.path / answer.file).string(), error.what());
   }
   return finding;
 }

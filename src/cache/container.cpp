@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "cache/manifest.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
@@ -49,12 +50,8 @@ bool can_unpack_to(BytesView start, std::uint64_t stored_bytes, std::uint64_t ra
 }
 constexpr std::uint64_t kFrameHeaderBytes = 18;
 
-/// What a section may unpack to where nothing else says how long it is: all that this machine has.
 void require_memory(const std::string& section, std::uint64_t raw_bytes) {
-  const auto pages = static_cast<std::uint64_t>(std::max(::sysconf(_SC_PHYS_PAGES), 1L));
-  if (raw_bytes <= pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) return;
-  throw ResourceError("", "section " + printable(section) + " of the cache takes " + std::to_string(raw_bytes >> 20) +
-                              " MiB, more than the memory of this machine");
+  require_import_memory(raw_bytes, "", "section " + printable(section) + " of the cache");
 }
 
 /// Byte k of every value together: high bytes of floats and indices repeat, low ones do not.
@@ -93,6 +90,32 @@ void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
   }
   for (std::size_t k = 0; k < stride; ++k)
     for (std::size_t i = 0; i < count; ++i) out[i * stride + k] = *next++;
+}
+
+/// A section of values wider than a byte, unpacked block by block: no second copy of all of it.
+/// False: it does not unpack to as many bytes.
+bool unpack_grouped(BytesView stored, std::uint32_t stride, std::span<std::byte> out) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  if (context == nullptr) throw std::bad_alloc();
+  Bytes block(ZSTD_DStreamOutSize());
+  ZSTD_inBuffer in{stored.data(), stored.size(), 0};
+  const std::size_t count = out.size() / stride;
+  std::size_t done = 0, value = 0, byte = 0, open = 1;
+  while (open != 0) {
+    ZSTD_outBuffer next{block.data(), block.size(), 0};
+    const std::size_t read_before = in.pos;
+    open = ZSTD_decompressStream(context.get(), &next, &in);
+    if (ZSTD_isError(open) != 0 || next.pos > out.size() - done) return false;
+    if (next.pos == 0 && in.pos == read_before) return false;
+    done += next.pos;
+    for (std::size_t i = 0; i < next.pos; ++i) {
+      out[value * stride + byte] = block[i];
+      if (++value < count) continue;
+      value = 0;
+      ++byte;
+    }
+  }
+  return done == out.size() && in.pos == in.size;
 }
 
 }  // namespace
@@ -250,7 +273,8 @@ const ContainerReader::Section& ContainerReader::checked(std::string_view name, 
 }
 
 std::string ContainerReader::text(std::string_view name) const {
-  require_memory(std::string(name), raw_bytes(name));
+  constexpr std::uint64_t kParsed = 16;  // bytes of a parsed document for each of its text
+  require_memory(std::string(name), bounded_product(raw_bytes(name), kParsed));
   std::string text(raw_bytes(name), '\0');
   read(find(name), std::as_writable_bytes(std::span<char>(text.data(), text.size())));
   return text;
@@ -264,7 +288,10 @@ void ContainerReader::read(const Section& section, std::span<std::byte> out) con
   std::unique_ptr<std::byte[]> unpacked;  // not filled with zeros first
   BytesView grouped = stored;
   if (section.codec == kZstd) {
+    constexpr std::uint64_t kLarge = std::uint64_t{64} << 20;
     const bool in_place = section.stride == 1;
+    if (!in_place && section.raw_bytes > kLarge)
+      return check_sound(unpack_grouped(stored, section.stride, out), "section " + section.name + " does not unpack");
     if (!in_place) unpacked = std::make_unique_for_overwrite<std::byte[]>(section.raw_bytes);
     std::byte* target = in_place ? out.data() : unpacked.get();
     const std::size_t size = ZSTD_decompress(target, section.raw_bytes, stored.data(), stored.size());

@@ -74,8 +74,8 @@ class ByteSource {
   std::variant<BytesView, std::filesystem::path> source_;
 };
 
-/// A .rlk file, its header and table checked. Every function throws CacheDamage; ResourceError where a section would
-/// fill more than this machine's memory.
+/// A .rlk file, its header and table checked. Every function throws CacheDamage; ResourceError where a section takes
+/// more than --import-memory.
 class ContainerReader {
  public:
   /// What is in memory must outlive the reader.

@@ -7,12 +7,15 @@
 
 #include "base/error.h"
 #include "base/json.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
 
 constexpr std::int64_t kMostValues = std::int64_t{1} << 40;
 constexpr float kLargestNumber = 1e18F;
+constexpr std::array<const char*, 10> kColumns{"positions", "triangles", "normals", "tangents",  "uv0",
+                                               "uv1",       "colors",    "bounds",  "min_alpha", "instances"};
 
 template <class T>
 void check_numbers(const std::vector<T>& values, const char* section) {
@@ -237,6 +240,10 @@ void decode_look(BytesView file, LookDocument& document) {
 
 void decode_geometry(BytesView file, const CacheIdentity& identity, LookDocument& document, Assets& assets) {
   const ContainerReader reader(file, identity);
+  std::uint64_t bytes = 0;
+  for (const char* section : kColumns) bytes = bounded_sum(bytes, reader.raw_bytes(section));
+  require_import_memory(bounded_product(bytes, 2), "", "the geometry, with a copy while it is read,");
+  ImportShare share(bytes, "", "the geometry");
   const std::string text = reader.text("names");
   read_own_json([&] {
     const Json json = parse_json(text, "");
@@ -249,6 +256,8 @@ void decode_geometry(BytesView file, const CacheIdentity& identity, LookDocument
     read_names(names, document, assets);
     read_instances(names, Cutter<Transform>(reader, "instances"), document);
   });
+  share = ImportShare();  // from here on with what has been made of it
+  count_geometry(document);
 }
 
 }  // namespace relook

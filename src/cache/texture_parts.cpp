@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "cache/scene_parts.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
@@ -48,20 +49,22 @@ std::vector<TexturePyramid::Level> read_levels(const JsonView& view, std::uint64
 
 std::shared_ptr<const TexturePyramid> read_pyramid(const JsonView& entry, const std::string& blob,
                                                    std::span<const Rgba> range, const ContainerReader& reader) {
-  auto pyramid = std::make_shared<TexturePyramid>();
-  pyramid->format = static_cast<TexelFormat>(entry.at("format").one_of(kFormats));
+  TexturePyramid pyramid;
+  pyramid.format = static_cast<TexelFormat>(entry.at("format").one_of(kFormats));
   std::uint64_t texels = 0;
-  pyramid->levels = read_levels(entry.at("levels"), texels);
-  if (pyramid->format == TexelFormat::float32) {
-    pyramid->texels32 = reader.column<float>(blob, texels * 4);
-    for (const float value : pyramid->texels32)
+  pyramid.levels = read_levels(entry.at("levels"), texels);
+  const bool is_float = pyramid.format == TexelFormat::float32;
+  ImportShare share(texels * (is_float ? 16 : 4), "", "image " + printable(entry.at("image").text()));
+  if (is_float) {
+    pyramid.texels32 = reader.column<float>(blob, texels * 4);
+    for (const float value : pyramid.texels32)
       check_sound(std::isfinite(value), "a number that is not finite in section ", blob);
   } else {
-    pyramid->texels8 = reader.column<std::uint8_t>(blob, texels * 4);
+    pyramid.texels8 = reader.column<std::uint8_t>(blob, texels * 4);
   }
-  pyramid->smallest = range[0];
-  pyramid->largest = range[1];
-  return pyramid;
+  pyramid.smallest = range[0];
+  pyramid.largest = range[1];
+  return kept_with(std::move(share), std::move(pyramid));
 }
 
 /// Distinct images by their bytes' address: images that share bytes share a section.
@@ -86,8 +89,11 @@ void read_images(const JsonView& entries, const ContainerReader& reader, Assets&
     const std::int64_t number = entry.at("blob").integer(0, static_cast<std::int64_t>(entries.size()));
     std::shared_ptr<const Bytes>& bytes = blobs[number];
     const std::string section = blob_name("image", static_cast<std::size_t>(number));
-    if (bytes == nullptr)
-      bytes = std::make_shared<const Bytes>(reader.column<std::byte>(section, reader.raw_bytes(section)));
+    if (bytes == nullptr) {
+      const std::uint64_t size = reader.raw_bytes(section);
+      ImportShare share(size, "", "section " + section);
+      bytes = kept_with(std::move(share), reader.column<std::byte>(section, size));
+    }
     const std::string name = entry.at("name").text();
     assets.images[name] = {name, bytes};
   }

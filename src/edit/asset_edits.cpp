@@ -4,6 +4,7 @@
 #include "base/hash.h"
 #include "edit/transaction.h"
 #include "scene/import.h"
+#include "scene/import_memory.h"
 #include "scene/look_names.h"
 
 namespace relook {
@@ -62,7 +63,9 @@ void Transaction::load_image(const std::string& name, const PatchPlace& place) {
   Json& value = *find({"images", name});
   if (!value["uri"].is_string()) throw InputError(place.file, place.where, "expected a string");
   const std::filesystem::path path = contained_path(folder_, value["uri"].get<std::string>(), place.file, place.where);
-  auto bytes = std::make_shared<const Bytes>(read_file(path));
+  Bytes content = read_file(path);
+  ImportShare share(content.size(), place.file, place.where + ": the image");
+  auto bytes = kept_with(std::move(share), std::move(content));
   (void)read_image_header(*bytes, place.file, place.where);
   Json& extras = value["extras"];
   if (!extras.is_object()) extras = Json::object();
@@ -100,6 +103,8 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
     new_instances_.push_back(renamed(Section::nodes, name));
     document().instances[new_instances_.back()] = std::move(matrices);
   }
+  count_geometry(part);  // nothing is left there
+  count_geometry(document());
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const auto section = static_cast<Section>(s);
     const std::string section_text(section_name(section));

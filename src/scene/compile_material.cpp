@@ -227,7 +227,8 @@ void decode_images(const LookDocument& document, PyramidStore& pyramids) {
   const std::vector<std::pair<std::string, bool>> list(wanted.begin(), wanted.end());
   parallel_for(list.size(), [&](std::size_t i) {
     try {
-      (void)pyramids.get(*document.assets, list[i].first, list[i].second, document.file, "");
+      (void)pyramids.get(*document.assets, list[i].first, list[i].second, document.file,
+                         "/images/" + escape_token(list[i].first));
     } catch (const InputError&) {
       // Reported, with its place, when the slot that needs it is compiled.
     }

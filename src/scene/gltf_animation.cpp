@@ -41,21 +41,29 @@ const GltfAccessor& accessor_of(const GltfModel& model, const JsonView& index) {
   return accessor;
 }
 
-std::vector<float> read_times(const GltfModel& model, const JsonView& input) {
+/// Many channels may name one accessor.
+std::vector<float> counted_floats(const GltfModel& model, const GltfAccessor& accessor, const JsonView& place,
+                                  ImportShare& share) {
+  const std::uint64_t numbers = bounded_product(accessor.count, accessor.width);
+  share.add(ImportShare(bounded_product(numbers, sizeof(float)), place.file(), place.pointer() + ": the animation"));
+  return read_floats(model, accessor);
+}
+
+std::vector<float> read_times(const GltfModel& model, const JsonView& input, ImportShare& share) {
   const GltfAccessor& accessor = accessor_of(model, input);
   if (accessor.width != 1 || accessor.component != Component::f32) input.fail("times must be scalar floats");
-  std::vector<float> times = read_floats(model, accessor);
+  std::vector<float> times = counted_floats(model, accessor, input, share);
   for (std::size_t i = 0; i < times.size(); ++i)
     if (!std::isfinite(times[i]) || times[i] < 0 || (i > 0 && times[i] <= times[i - 1]))
       input.fail("time " + std::to_string(i) + " is negative, not finite, or not later than the one before");
   return times;
 }
 
-void read_sampler(const GltfModel& model, const JsonView& sampler, AnimationChannel& channel) {
+void read_sampler(const GltfModel& model, const JsonView& sampler, AnimationChannel& channel, ImportShare& share) {
   static constexpr std::array<std::string_view, 3> kInterpolations{"LINEAR", "STEP", "CUBICSPLINE"};
   if (const auto interpolation = member(sampler, "interpolation"))
     channel.interpolation = static_cast<Interpolation>(interpolation->one_of(kInterpolations));
-  channel.times = read_times(model, sampler.at("input"));
+  channel.times = read_times(model, sampler.at("input"), share);
   const JsonView output = sampler.at("output");
   const GltfAccessor& accessor = accessor_of(model, output);
   const std::size_t parts = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
@@ -66,12 +74,13 @@ void read_sampler(const GltfModel& model, const JsonView& sampler, AnimationChan
   // Several scalars a keyframe: morph weights, an array of numbers.
   channel.width = accessor.width * (accessor.count / (channel.times.size() * parts));
   if (channel.is_rotation && channel.width != 4) output.fail("a rotation has four numbers");
-  channel.values = read_floats(model, accessor);
+  channel.values = counted_floats(model, accessor, output, share);
   for (std::size_t i = 0; i < channel.values.size(); ++i)
     if (!std::isfinite(channel.values[i])) output.fail("number " + std::to_string(i) + " is not finite");
 }
 
-Animation read_animation(const JsonView& root, const GltfModel& model, const JsonView& view, std::size_t number) {
+Animation read_animation(const JsonView& root, const GltfModel& model, const JsonView& view, std::size_t number,
+                         ImportShare& share) {
   Animation animation;
   if (view.has("name")) animation.name = printable(view.at("name").text());
   if (animation.name.empty()) animation.name = "animation_" + std::to_string(number);
@@ -86,7 +95,7 @@ Animation read_animation(const JsonView& root, const GltfModel& model, const Jso
     }
     channel.is_rotation = is_node_rotation(target, channel.pointer);
     const std::size_t sampler = reference(place.at("sampler"), array_size(view, "samplers"), "sampler");
-    read_sampler(model, view.at("samplers").at(sampler), channel);
+    read_sampler(model, view.at("samplers").at(sampler), channel, share);
     animation.channels.push_back(std::move(channel));
   });
   return animation;
@@ -98,12 +107,13 @@ std::vector<Animation> import_animations(const std::filesystem::path& path) {
   GltfSource source = read_gltf_source(path);
   std::vector<std::string> unused;  // of the scene; whoever imports it says them
   check_document(source.json, source.file, unused);
-  auto buffers = load_buffers(source);
+  ImportShare share;
+  auto buffers = load_buffers(source, share);
   const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
   const JsonView root(source.json, source.file);
   std::vector<Animation> animations;
   for_each_object(root, "animations", [&](const JsonView& view, std::size_t i) {
-    animations.push_back(read_animation(root, model, view, i));
+    animations.push_back(read_animation(root, model, view, i, share));
   });
   return animations;
 }

@@ -13,7 +13,7 @@ constexpr std::size_t kMostInstances = std::size_t{1} << 24;
 
 /// An attribute's numbers, `width` per instance; empty without the attribute.
 std::vector<float> instance_values(const JsonView& attributes, const GltfModel& model, std::string_view semantic,
-                                   std::size_t width, bool may_be_integer) {
+                                   std::size_t width, bool may_be_integer, ImportShare& share) {
   const auto place = member(attributes, semantic);
   if (!place) return {};
   const GltfAccessor& accessor = model.accessors[static_cast<std::size_t>(place->integer(0, INT64_MAX))];
@@ -23,6 +23,8 @@ std::vector<float> instance_values(const JsonView& attributes, const GltfModel& 
   if (!fits) place->fail("the accessor's type is not one that this attribute may have");
   if (accessor.count > kMostInstances) place->fail("more than " + std::to_string(kMostInstances) + " instances");
   if (const auto fault = data_fault(model, accessor); !fault.empty()) place->fail(fault);
+  share.add(ImportShare(accessor.count * (width * sizeof(float) + sizeof(Transform)), place->file(),
+                        place->pointer() + ": the instances"));
   std::vector<float> values = read_floats(model, accessor);
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!(std::abs(values[i]) <= kLargestTransform))
@@ -48,10 +50,10 @@ Transform composed(const float* t, const float* q, const float* s, const JsonVie
   return matrix;
 }
 
-std::vector<Transform> node_instances(const JsonView& attributes, const GltfModel& model) {
-  const auto translations = instance_values(attributes, model, "TRANSLATION", 3, false);
-  const auto rotations = instance_values(attributes, model, "ROTATION", 4, true);
-  const auto scales = instance_values(attributes, model, "SCALE", 3, false);
+std::vector<Transform> node_instances(const JsonView& attributes, const GltfModel& model, ImportShare& share) {
+  const auto translations = instance_values(attributes, model, "TRANSLATION", 3, false, share);
+  const auto rotations = instance_values(attributes, model, "ROTATION", 4, true, share);
+  const auto scales = instance_values(attributes, model, "SCALE", 3, false, share);
   const std::size_t count = std::max({translations.size() / 3, rotations.size() / 4, scales.size() / 3});
   const auto fits = [&](const std::vector<float>& values, std::size_t width) {
     return values.empty() || values.size() == count * width;
@@ -70,14 +72,15 @@ std::vector<Transform> node_instances(const JsonView& attributes, const GltfMode
 
 }  // namespace
 
-std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model, std::string_view file) {
+std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model, std::string_view file,
+                                                     ImportShare& share) {
   std::vector<std::vector<Transform>> instances;
   std::size_t total = 0;
   for_each_object(JsonView(gltf, file), "nodes", [&](const JsonView& node, std::size_t) {
     auto& of_node = instances.emplace_back();
     const auto instancing = extension(node, "EXT_mesh_gpu_instancing");
     if (!instancing || !node.has("mesh")) return;
-    of_node = node_instances(instancing->at("attributes"), model);
+    of_node = node_instances(instancing->at("attributes"), model, share);
     total += of_node.size();
     if (total > kMostInstances) node.fail("more than " + std::to_string(kMostInstances) + " instances in the file");
   });

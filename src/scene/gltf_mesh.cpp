@@ -1,8 +1,8 @@
 // Primitives to triangles (glTF 2.0 section 3.7.2).
-#include <unistd.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/gltf_accessor.h"
@@ -202,30 +202,48 @@ bool makes_triangles(const GltfPrimitive& primitive) {
   return primitive.mode >= 4 && primitive.attributes.contains("POSITION");
 }
 
-/// Bytes that a primitive takes while it is decoded.
-std::uint64_t decoded_bytes(const GltfModel& model, const GltfPrimitive& primitive) {
-  if (!makes_triangles(primitive)) return 0;
+struct DecodedBytes {
+  std::uint64_t kept = 0, passing = 0;  // passing: beside them, while one primitive is decoded
+};
+
+DecodedBytes decoded_bytes(const GltfModel& model, const GltfPrimitive& primitive) {
+  if (!makes_triangles(primitive)) return {};
+  constexpr std::array<std::pair<std::string_view, std::uint64_t>, 6> kColumns{{{"POSITION", sizeof(Point)},
+                                                                               {"NORMAL", sizeof(Normal)},
+                                                                               {"TANGENT", sizeof(Imath::V4f)},
+                                                                               {"TEXCOORD_0", sizeof(Uv)},
+                                                                               {"TEXCOORD_1", sizeof(Uv)},
+                                                                               {"COLOR_0", sizeof(Rgba)}}};
   const std::uint64_t vertices = model.accessors[primitive.attributes.at("POSITION")].count;
   const std::uint64_t corners =
       primitive.indices == kNoIndex ? vertices : std::uint64_t{model.accessors[primitive.indices].count};
-  const std::uint64_t corner_bytes = primitive.mode == 4 ? 8 : 16;
-  return vertices * (24 + 16 * primitive.attributes.size()) + corners * corner_bytes;
+  const std::uint64_t triangles = primitive.mode == 4 ? corners / 3 : corners;
+  DecodedBytes bytes{bounded_product(triangles, sizeof(std::array<std::uint32_t, 3>)), 0};
+  for (const auto& [semantic, size] : kColumns)
+    if (primitive.attributes.contains(semantic))
+      bytes.kept = bounded_sum(bytes.kept, bounded_product(vertices, size));
+  bytes.passing =
+      bounded_sum(bounded_product(corners, sizeof(std::uint32_t)), bounded_product(vertices, sizeof(Imath::V3d)));
+  return bytes;
 }
 
-/// A small file can name the same accessor in many primitives: refused before memory runs out.
-void check_total(const GltfModel& model, std::string_view file) {
-  std::uint64_t data = 0, needed = 0;
+/// A small file can name the same accessor in many primitives.
+void check_total(const GltfModel& model, std::string_view file, ImportShare& share) {
+  std::uint64_t data = 0, needed = 0, passing = 0;
   for (const auto& buffer : model.buffers) data += buffer.size();
   for (const auto& primitives : model.meshes)
-    for (const auto& primitive : primitives) needed += decoded_bytes(model, primitive);
-  const auto memory =
-      static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    for (const auto& primitive : primitives) {
+      const DecodedBytes bytes = decoded_bytes(model, primitive);
+      needed = bounded_sum(needed, bytes.kept);
+      passing = std::max(passing, bytes.passing);
+    }
   constexpr std::uint64_t kAlwaysFine = std::uint64_t{256} << 20, kMostGrowth = 64;
-  const std::uint64_t limit = std::min(memory / 2, kAlwaysFine + kMostGrowth * data);
+  const std::uint64_t limit = kAlwaysFine + kMostGrowth * data;
   if (needed > limit)
     throw InputError(file, "/meshes",
                      "the geometry needs " + std::to_string(needed >> 20) + " MB; " + std::to_string(limit >> 20) +
                          " MB are allowed for this file");
+  share.add(ImportShare(bounded_sum(needed, passing), file, "/meshes: the geometry"));
 }
 
 /// Primitives left out for one reason: one warning for all.
@@ -246,8 +264,8 @@ struct LeftOut {
 }  // namespace
 
 std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
-                                             std::vector<std::string>& warnings) {
-  check_total(model, file);
+                                             std::vector<std::string>& warnings, ImportShare& share) {
+  check_total(model, file, share);
   std::vector<std::vector<Mesh>> meshes;
   LeftOut not_triangles, without_positions, empty;
   for (std::size_t m = 0; m < model.meshes.size(); ++m) {

@@ -10,6 +10,7 @@
 
 #include "base/json.h"
 #include "scene/import.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 
@@ -54,13 +55,13 @@ struct GltfModel {
                                     std::string_view file);
 
 /// All triangle primitives, in order. Checks what can only be seen in the data: finite values, indices below the vertex
-/// count, no primitive restart. Throws InputError{file, pointer, ...}; refuses before allocating more than the machine
-/// has.
+/// count, no primitive restart. Throws InputError{file, pointer, ...}, for a small file that asks for much, too.
+/// `share`: takes the bytes of every column before it is made; throws ResourceError where they are not left.
 [[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
-                                                           std::vector<std::string>& warnings);
+                                                           std::vector<std::string>& warnings, ImportShare& share);
 
-/// EXT_mesh_gpu_instancing of every node. Throws InputError.
+/// EXT_mesh_gpu_instancing of every node. `share`: as above. Throws InputError, ResourceError.
 [[nodiscard]] std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model,
-                                                                   std::string_view file);
+                                                                   std::string_view file, ImportShare& share);
 
 }  // namespace relook

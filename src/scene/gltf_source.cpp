@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_json.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
@@ -124,6 +125,9 @@ std::filesystem::path external_path(const GltfSource& source, const JsonView& pl
 }
 
 Bytes read_external(const std::filesystem::path& path, const JsonView& place) {
+  std::error_code is_no_file;
+  const std::uintmax_t size = std::filesystem::file_size(path, is_no_file);
+  require_import_memory(is_no_file ? 0 : size, place.file(), place.pointer() + ": the file");
   try {
     return read_file(path);
   } catch (const InputError& error) {
@@ -168,7 +172,7 @@ class ImageLoader {
     const auto uri = member(image, "uri");
     if (!uri) return nullptr;
     const std::string text = uri->text();
-    auto bytes = is_data_uri(text) ? std::make_shared<const Bytes>(data_uri_content(text, *uri)) : load_file(*uri);
+    auto bytes = is_data_uri(text) ? kept(data_uri_content(text, *uri), *uri) : load_file(*uri);
     if (bytes->empty()) uri->fail("the image is empty");
     return bytes;
   }
@@ -185,14 +189,18 @@ class ImageLoader {
     if (length > copyable_bytes_) place.fail("the buffer views of the images overlap");
     copyable_bytes_ -= length;
     const BytesView part = std::as_bytes(buffer.subspan(view.value("byteOffset", std::size_t{0}), length));
-    bytes = std::make_shared<const Bytes>(part.begin(), part.end());
+    bytes = kept(Bytes(part.begin(), part.end()), place);
     return bytes;
   }
   std::shared_ptr<const Bytes> load_file(const JsonView& place) {
     const auto path = external_path(source_, place, place.text());
     auto& bytes = by_path_[path];
-    if (!bytes) bytes = std::make_shared<const Bytes>(read_external(path, place));
+    if (!bytes) bytes = kept(read_external(path, place), place);
     return bytes;
+  }
+  static std::shared_ptr<const Bytes> kept(Bytes bytes, const JsonView& place) {
+    ImportShare share(bytes.size(), place.file(), place.pointer() + ": the image");
+    return kept_with(std::move(share), std::move(bytes));
   }
 
   const GltfSource& source_;
@@ -225,10 +233,11 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
   return source;
 }
 
-std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source) {
+std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source, ImportShare& share) {
   std::vector<std::vector<unsigned char>> buffers;
   for_each_object(JsonView(source.json, source.file), "buffers", [&](const JsonView& buffer, std::size_t index) {
     buffers.push_back(load_buffer(source, buffer, index));
+    share.add(ImportShare(buffers.back().size(), source.file, buffer.pointer() + ": the buffer"));
   });
   return buffers;
 }

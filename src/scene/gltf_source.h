@@ -8,6 +8,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
+#include "scene/import_memory.h"
 #include "scene/mesh.h"
 
 namespace relook {
@@ -27,7 +28,7 @@ struct GltfSource {
 
 /// Every buffer's bytes, exactly byteLength of them, or none for a placeholder without a uri. Takes the binary chunk
 /// out of `source`. Requires: /buffers passed check_data_layout().
-[[nodiscard]] std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source);
+[[nodiscard]] std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source, ImportShare& share);
 
 /// The encoded bytes of every image, none for an image without uri and buffer view. Requires: /images and /bufferViews
 /// passed their checks.

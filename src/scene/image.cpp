@@ -7,12 +7,13 @@
 #include "base/error.h"
 #include "scene/image_library.h"
 #include "scene/image_stream.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
 
-/// Bound of one decoded image, without its pyramid.
-constexpr std::uint64_t kMostDecodedBytes = std::uint64_t{1} << 30;
+/// Of rows that are decoded at once, in the format of the pyramid.
+constexpr std::size_t kRowBytes = std::size_t{4} << 20;
 /// Bound of an HDR texel: sums of many stay finite.
 constexpr float kLargestTexel = 1e9F;
 
@@ -33,18 +34,28 @@ std::uint64_t most_pixels_per_byte(std::string_view format) {
   return format == "hdr" ? 64 : 1032;
 }
 
+std::uint64_t texels_of_pyramid(std::uint32_t width, std::uint32_t height) {
+  std::uint64_t texels = std::uint64_t{width} * height;
+  while (width > 1 || height > 1) {
+    width = std::max(width / 2, 1U);
+    height = std::max(height / 2, 1U);
+    texels += std::uint64_t{width} * height;
+  }
+  return texels;
+}
+
 /// An image opened in memory, its header checked.
 class OpenImage {
  public:
-  OpenImage(BytesView encoded, std::string_view file, std::string_view where) : file_(file), where_(where) {
-    const std::string format = format_name(encoded);
-    if (format.empty()) fail("it is not a PNG, JPEG, Radiance HDR or OpenEXR image");
-    const BytesView stream = reduced(format, encoded);
+  OpenImage(BytesView encoded, std::string_view file, std::string_view where)
+      : file_(file), where_(where), format_(format_name(encoded)) {
+    if (format_.empty()) fail("it is not a PNG, JPEG, Radiance HDR or OpenEXR image");
+    const BytesView stream = reduced(encoded);
     std::string error;
-    image_ = open_image(format.c_str(), stream, error);
+    image_ = open_image(format_.c_str(), stream, error);
     if (!image_) fail(error);
     spec_ = image_->spec();
-    check_header(stream.size() * most_pixels_per_byte(format));
+    check_header(stream.size() * most_pixels_per_byte(format_));
   }
 
   [[nodiscard]] ImageHeader header() const {
@@ -52,24 +63,35 @@ class OpenImage {
             spec_.type != TexelType::byte};
   }
   [[nodiscard]] bool is_16_bit() const { return spec_.type == TexelType::word; }
-  [[nodiscard]] std::size_t texel_count() const {
-    return static_cast<std::size_t>(spec_.width) * static_cast<std::size_t>(spec_.height);
+
+  /// The memory of the pyramid, and what the decoder needs beside it. Throws ResourceError.
+  [[nodiscard]] ImportShare share() const {
+    const std::string what =
+        place() + "the image of " + std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels";
+    ImportShare share(texels_of_pyramid(header().width, header().height) * texel_bytes(), file_, what);
+    take_working_memory(block_bytes(), file_, what);
+    return share;
   }
 
-  /// RGBA texels of a number type; grey spread over RGB, missing alpha `opaque`.
-  template <class Number>
-  [[nodiscard]] std::vector<Number> texels(TexelType type, Number opaque) {
+  /// RGBA texels as numbers of the pyramid, with room for its smaller levels; once only. Grey is spread over RGB,
+  /// missing alpha `opaque`. `convert`: appends a few rows of `Stored` texels to the numbers.
+  template <class Stored, class Number, class Convert>
+  [[nodiscard]] std::vector<Number> texels(TexelType type, Stored opaque, const Convert& convert) {
     std::vector<Number> values;
-    values.reserve(pyramid_texel_bound() * 4);  // build_pyramid() appends the smaller levels
-    values.resize(texel_count() * 4, Number{0});
-    const int channels = color_channels() + (has_alpha() ? 1 : 0);
-    if (!image_->read(channels, type, values.data(), 4 * sizeof(Number))) fail(image_->error());
-    for (std::size_t i = 0; i < values.size(); i += 4) {
-      if (!has_alpha()) values[i + 3] = opaque;
-      if (color_channels() > 1) continue;
-      if (has_alpha()) values[i + 3] = values[i + 1];
-      values[i + 1] = values[i + 2] = values[i];
+    values.reserve(texels_of_pyramid(header().width, header().height) * 4);
+    const auto height = static_cast<std::size_t>(spec_.height), row = static_cast<std::size_t>(spec_.width) * 4;
+    const auto tile = static_cast<std::size_t>(std::max(spec_.tile_height, 1));
+    const std::size_t step = std::max<std::size_t>(kRowBytes / (row * sizeof(Number)) / tile, 1) * tile;
+    std::vector<Stored> rows;
+    for (std::size_t y = 0; y < height; y += step) {
+      const std::size_t end = std::min(y + step, height);
+      rows.assign((end - y) * row, Stored{0});
+      read_rows(static_cast<int>(y), static_cast<int>(end), type, opaque, rows);
+      convert(rows, values);
     }
+    // Before any loop in parallel, which may decode another image on this thread.
+    image_.reset();
+    turn_ = {};
     return values;
   }
 
@@ -78,19 +100,43 @@ class OpenImage {
   }
 
  private:
-  [[nodiscard]] std::size_t pyramid_texel_bound() const {
-    const auto sides = static_cast<std::size_t>(spec_.width) + static_cast<std::size_t>(spec_.height);
-    return texel_count() + texel_count() / 3 + 2 * sides;
+  [[nodiscard]] std::string place() const { return where_.empty() ? "" : std::string(where_) + ": "; }
+  template <class Stored>
+  void read_rows(int begin, int end, TexelType type, Stored opaque, std::vector<Stored>& rows) {
+    const int channels = color_channels() + (has_alpha() ? 1 : 0);
+    if (!image_->read_rows(begin, end, channels, type, rows.data(), 4 * sizeof(Stored))) fail(image_->error());
+    for (std::size_t i = 0; i < rows.size(); i += 4) {
+      if (!has_alpha()) rows[i + 3] = opaque;
+      if (color_channels() > 1) continue;
+      if (has_alpha()) rows[i + 3] = rows[i + 1];
+      rows[i + 1] = rows[i + 2] = rows[i];
+    }
+  }
+  [[nodiscard]] std::uint64_t texel_bytes() const { return spec_.type == TexelType::byte ? 4 : 16; }
+  /// Of the rows that are decoded at once, with all channels that the file has; 0: few. OpenEXR unpacks up to 256.
+  [[nodiscard]] std::uint64_t block_bytes() const {
+    constexpr int kBlockRows = 256;
+    constexpr std::uint64_t kFewBytes = std::uint64_t{64} << 20, kCopies = 8;  // numbers of a texel, on their way
+    const int rows = std::min(std::max(format_ == "openexr" ? kBlockRows : 1, spec_.tile_height), spec_.height);
+    const std::uint64_t texel = (static_cast<std::uint64_t>(spec_.channels) + kCopies) * sizeof(float);
+    const std::uint64_t block =
+        bounded_product(static_cast<std::uint64_t>(rows) * static_cast<std::uint64_t>(spec_.width), texel);
+    return block > kFewBytes ? block : 0;
   }
   [[nodiscard]] int color_channels() const { return spec_.channels >= 3 ? 3 : 1; }
   [[nodiscard]] bool has_alpha() const {
     return spec_.channels > color_channels() && spec_.alpha_channel == color_channels();
   }
   /// Leaves out of PNG and JPEG files what makes no pixels.
-  BytesView reduced(const std::string& format, BytesView encoded) {
-    if (format != "png" && format != "jpeg") return encoded;
-    ImageStream stream = format == "png" ? png_pixels(encoded) : jpeg_pixels(encoded);
+  BytesView reduced(BytesView encoded) {
+    if (format_ != "png" && format_ != "jpeg") return encoded;
+    ImageStream stream = format_ == "png" ? png_pixels(encoded) : jpeg_pixels(encoded);
     if (!stream.fault.empty()) fail(stream.fault);
+    if (stream.held_bytes > 0) {
+      static std::mutex turn;  // one such image at a time: what their decoders hold is counted once
+      turn_ = std::unique_lock(turn);
+      take_working_memory(stream.held_bytes, file_, place() + "the image, while it is decoded,");
+    }
     reduced_ = std::move(stream.bytes);
     return reduced_;
   }
@@ -99,31 +145,64 @@ class OpenImage {
       fail("it has no pixels, or is no plain image");
     const std::uint64_t count = std::uint64_t{static_cast<std::uint32_t>(spec_.width)} *
                                 std::uint64_t{static_cast<std::uint32_t>(spec_.height)};
-    const std::uint64_t texel_bytes = spec_.type == TexelType::byte ? 4 : 16;
-    if (count > kMostImagePixels || count * texel_bytes > kMostDecodedBytes)
+    if (count > kMostImagePixels)
       fail(std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels are too many");
     if (count > most_encoded_pixels)
       fail("the file is too short for " + std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels");
   }
 
   std::string_view file_, where_;
+  std::string format_;
   Bytes reduced_;
+  std::unique_lock<std::mutex> turn_;
   std::unique_ptr<ImageReader> image_;
   ImageSpec spec_;
 };
 
-/// 16-bit values as linear floats; `color`: sRGB-encoded, but for alpha.
-std::vector<float> linear_of_16_bit(const std::vector<std::uint16_t>& texels, bool color) {
+/// Linear values of 16-bit ones; `color`: sRGB-encoded.
+std::vector<float> linear_of_16_bit(bool color) {
   std::vector<float> table(65536);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const double value = static_cast<double>(i) / 65535.0;
     const double linear = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
     table[i] = static_cast<float>(color ? linear : value);
   }
-  std::vector<float> values(texels.size());
-  for (std::size_t i = 0; i < texels.size(); ++i)
-    values[i] = i % 4 == 3 ? static_cast<float>(texels[i]) / 65535.0F : table[texels[i]];
-  return values;
+  return table;
+}
+
+std::vector<std::uint8_t> byte_texels(OpenImage& image) {
+  return image.texels<std::uint8_t, std::uint8_t>(TexelType::byte, 255, [](const auto& rows, auto& values) {
+    values.insert(values.end(), rows.begin(), rows.end());
+  });
+}
+
+/// Alpha is linear, whatever colours are.
+std::vector<float> texels_of_16_bit(OpenImage& image, bool color) {
+  const std::vector<float> table = linear_of_16_bit(color);
+  return image.texels<std::uint16_t, float>(TexelType::word, 65535, [&](const auto& rows, auto& values) {
+    const std::size_t first = values.size();
+    values.resize(first + rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      values[first + i] = i % 4 == 3 ? static_cast<float>(rows[i]) / 65535.0F : table[rows[i]];
+  });
+}
+
+std::vector<float> float_texels(OpenImage& image) {
+  return image.texels<float, float>(TexelType::real, 1.0F, [](const auto& rows, auto& values) {
+    const std::size_t first = values.size();
+    values.resize(first + rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      values[first + i] = std::isfinite(rows[i]) ? std::clamp(rows[i], 0.0F, kLargestTexel) : 0.0F;
+  });
+}
+
+TexturePyramid pyramid_of(OpenImage& image, bool color) {
+  const ImageHeader header = image.header();
+  if (!header.is_float)
+    return build_pyramid(color ? TexelFormat::srgb8 : TexelFormat::linear8, header.width, header.height,
+                         byte_texels(image));
+  return build_pyramid(header.width, header.height,
+                       image.is_16_bit() ? texels_of_16_bit(image, color) : float_texels(image));
 }
 
 }  // namespace
@@ -135,17 +214,8 @@ ImageHeader read_image_header(BytesView encoded, std::string_view file, std::str
 std::shared_ptr<const TexturePyramid> decode_pyramid(BytesView encoded, bool color, std::string_view file,
                                                      std::string_view where) {
   OpenImage image(encoded, file, where);
-  const ImageHeader header = image.header();
-  if (!header.is_float) {
-    const TexelFormat format = color ? TexelFormat::srgb8 : TexelFormat::linear8;
-    return std::make_shared<const TexturePyramid>(
-        build_pyramid(format, header.width, header.height, image.texels<std::uint8_t>(TexelType::byte, 255)));
-  }
-  std::vector<float> texels = image.is_16_bit()
-                                  ? linear_of_16_bit(image.texels<std::uint16_t>(TexelType::word, 65535), color)
-                                  : image.texels<float>(TexelType::real, 1.0F);
-  for (float& value : texels) value = std::isfinite(value) ? std::clamp(value, 0.0F, kLargestTexel) : 0.0F;
-  return std::make_shared<const TexturePyramid>(build_pyramid(header.width, header.height, std::move(texels)));
+  ImportShare share = image.share();
+  return kept_with(std::move(share), pyramid_of(image, color));
 }
 
 std::shared_ptr<const TexturePyramid> PyramidStore::get(const Assets& assets, const std::string& name, bool color,

@@ -15,6 +15,7 @@ struct ImageSpec {
   int width = 0, height = 0, depth = 0, channels = 0;
   int alpha_channel = -1;            // none: -1
   TexelType type = TexelType::real;  // as stored; anything else than byte and word reads as real
+  int tile_height = 0;               // of an image in tiles: rows are read in multiples of it
 };
 
 /// An image in memory whose header has been read.
@@ -22,8 +23,10 @@ class ImageReader {
  public:
   virtual ~ImageReader() = default;
   [[nodiscard]] virtual ImageSpec spec() const = 0;
-  /// Decodes the first `channels` channels to `texels`, `texel_bytes` from one texel to the next. False: see error().
-  [[nodiscard]] virtual bool read(int channels, TexelType type, void* texels, std::size_t texel_bytes) = 0;
+  /// Decodes the first `channels` channels of rows [begin, end) to `texels`, `texel_bytes` from one texel to the next.
+  /// Rows are asked for from the top, in steps of whole tiles. False: see error().
+  [[nodiscard]] virtual bool read_rows(int begin, int end, int channels, TexelType type, void* texels,
+                                       std::size_t texel_bytes) = 0;
   [[nodiscard]] virtual std::string error() const = 0;
 };
 

@@ -46,6 +46,15 @@ bool is_png_header(BytesView data) {
          byte(11) == 0 && byte(12) <= 1;
 }
 
+/// `header`: valid.
+std::uint64_t held_of_png(BytesView header) {
+  constexpr std::array<std::uint64_t, 7> kChannels{1, 0, 3, 4, 2, 0, 4};  // by colour type; a palette may have alpha
+  const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(header[i]); };
+  if (byte(12) == 0) return 0;
+  const std::uint64_t texel_bytes = kChannels[byte(9)] * (byte(8) == 16 ? 2 : 1);
+  return std::uint64_t{big_endian(header, 0, 4)} * big_endian(header, 4, 4) * texel_bytes;
+}
+
 constexpr std::uint8_t kStartOfImage = 0xD8, kEndOfImage = 0xD9, kStartOfScan = 0xDA, kFill = 0xFF;
 
 bool is_restart(std::uint8_t marker) { return marker >= 0xD0 && marker <= 0xD7; }
@@ -53,6 +62,14 @@ bool is_restart(std::uint8_t marker) { return marker >= 0xD0 && marker <= 0xD7; 
 /// Markers without a length behind them.
 bool stands_alone(std::uint8_t marker) {
   return marker == kStartOfImage || marker == kEndOfImage || marker == 0x01 || is_restart(marker);
+}
+
+constexpr std::uint8_t kProgressive = 0xC2, kProgressiveArithmetic = 0xCA;
+constexpr std::size_t kMostScans = 100;  // encoders write up to 20; each is a pass over the image
+
+/// Headers of a frame; C4, C8 and CC are tables and reserved.
+bool is_frame(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
 bool makes_pixels(std::uint8_t marker) {
@@ -91,6 +108,7 @@ ImageStream png_pixels(BytesView png) {
       return {{}, "the PNG is damaged: wrong CRC of the chunk" + at(offset)};
     if ((type == "IHDR") != (offset == kSignatureBytes)) return {{}, "the PNG does not start with one header"};
     if (type == "IHDR" && !is_png_header(chunk.subspan(8, length))) return {{}, "the header of the PNG is invalid"};
+    if (type == "IHDR") pixels.held_bytes = held_of_png(chunk.subspan(8, length));
     if (std::ranges::find(kKept, type) != kKept.end())
       pixels.bytes.insert(pixels.bytes.end(), chunk.begin(), chunk.end());
     else if (type[0] >= 'A' && type[0] <= 'Z')
@@ -108,7 +126,10 @@ ImageStream jpeg_pixels(BytesView jpeg) {
     pixels.bytes.insert(pixels.bytes.end(), part.begin(), part.end());
   };
   const ImageStream cut_short{{}, "the JPEG is cut short at byte " + std::to_string(jpeg.size())};
-  std::size_t offset = 0;
+  std::size_t offset = 0, scans = 0;
+  unsigned components = 0;
+  bool is_progressive = false;
+  std::uint64_t coefficient_bytes = 0;
   while (offset + 2 <= jpeg.size()) {
     if (std::to_integer<int>(jpeg[offset]) != 0xFF)
       return {{}, "the JPEG is damaged: no marker at byte " + std::to_string(offset)};
@@ -124,7 +145,19 @@ ImageStream jpeg_pixels(BytesView jpeg) {
       if (end < offset + 4) return {{}, "the JPEG is damaged: an impossible length at byte " + std::to_string(offset)};
       if (end > jpeg.size()) return cut_short;
     }
-    if (marker == kStartOfScan) end = end_of_scan(jpeg, end);
+    if (marker == kStartOfScan) {
+      if (++scans > kMostScans) return {{}, "the JPEG has more than " + std::to_string(kMostScans) + " scans"};
+      const unsigned in_scan = end > offset + 4 ? std::to_integer<unsigned>(jpeg[offset + 4]) : 0;
+      if (scans > 1 || is_progressive || in_scan != components) pixels.held_bytes = coefficient_bytes;
+      end = end_of_scan(jpeg, end);
+    } else if (is_frame(marker)) {
+      is_progressive = marker == kProgressive || marker == kProgressiveArithmetic;
+      if (end > offset + 9) {
+        components = std::to_integer<unsigned>(jpeg[offset + 9]);
+        const std::uint64_t height = big_endian(jpeg, offset + 5, 2), width = big_endian(jpeg, offset + 7, 2);
+        coefficient_bytes = 2 * components * width * height;
+      }
+    }
     if (makes_pixels(marker)) keep(offset, end);
     if (marker == kEndOfImage) return pixels;
     offset = end;

@@ -2,6 +2,7 @@
 // colour profiles, Exif, IPTC and texts that nobody reads (a bad IPTC block crashes OpenImageIO 2.4), print to stderr
 // about damaged PNG files, and fill the missing end of a JPEG with grey.
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "base/files.h"
@@ -12,13 +13,16 @@ namespace relook {
 struct ImageStream {
   Bytes bytes;
   std::string fault;
+  /// What a decoder holds of the image at once: all values of an interlaced PNG, all coefficients of a JPEG in more
+  /// than one scan, else 0.
+  std::uint64_t held_bytes = 0;
 };
 
 /// Keeps IHDR, PLTE, tRNS, IDAT and IEND. Every chunk must be whole and have the right CRC.
 [[nodiscard]] ImageStream png_pixels(BytesView png);
 
 /// Drops application segments (but JFIF's and Adobe's, which say how colours are coded) and comments. Every segment
-/// must be whole, and an EOI marker must end the image.
+/// must be whole, and an EOI marker must end the image; more than 100 scans are too many.
 [[nodiscard]] ImageStream jpeg_pixels(BytesView jpeg);
 
 }  // namespace relook

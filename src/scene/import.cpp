@@ -4,6 +4,7 @@
 #include "scene/gltf_json.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_source.h"
+#include "scene/import_memory.h"
 
 namespace relook {
 namespace {
@@ -39,11 +40,12 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   imported.file = source.file;
   check_document(source.json, source.file, imported.warnings);
   imported.files = external_files(source);
-  auto buffers = load_buffers(source);
+  ImportShare share;  // of what is held until the import is done; then its result is counted
+  auto buffers = load_buffers(source, share);
   imported.images = load_images(source, buffers);
   const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
-  imported.meshes = decode_meshes(model, source.file, imported.warnings);
-  imported.instances = decode_instances(source.json, model, source.file);
+  imported.meshes = decode_meshes(model, source.file, imported.warnings, share);
+  imported.instances = decode_instances(source.json, model, source.file, share);
   imported.gltf = std::move(source.json);
   drop_data_uris(imported.gltf);
   make_matrices_affine(imported.gltf);

@@ -2,6 +2,7 @@
 // what relook does not support is left out.
 #include "scene/look.h"
 
+#include "scene/import_memory.h"
 #include "scene/look_check.h"
 #include "scene/look_names.h"
 #include "scene/look_schema.h"
@@ -113,7 +114,7 @@ void add_entity(LookDocument& document, Section section, std::size_t index, Json
 }
 
 void move_assets(ImportedGltf& imported, LookDocument& document) {
-  document.assets = std::make_shared<Assets>();
+  document.assets = counted_assets();
   const auto& mesh_names = document.order[static_cast<std::size_t>(Section::meshes)];
   for (std::size_t i = 0; i < imported.meshes.size(); ++i) {
     std::vector<MeshId>& ids = document.assets->mesh_primitives[mesh_names.at(i)];
@@ -131,6 +132,7 @@ void move_assets(ImportedGltf& imported, LookDocument& document) {
   const auto& node_names = document.order[static_cast<std::size_t>(Section::nodes)];
   for (std::size_t i = 0; i < imported.instances.size(); ++i)
     if (!imported.instances[i].empty()) document.instances[node_names.at(i)] = std::move(imported.instances[i]);
+  count_geometry(document);
 }
 
 Json active_scene(const Json& gltf) {

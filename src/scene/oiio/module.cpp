@@ -31,13 +31,20 @@ class OiioImage final : public relook::ImageReader {
     const relook::TexelType type = spec_.format == OIIO::TypeDesc::UINT8    ? relook::TexelType::byte
                                    : spec_.format == OIIO::TypeDesc::UINT16 ? relook::TexelType::word
                                                                             : relook::TexelType::real;
-    return {spec_.width, spec_.height, spec_.depth, spec_.nchannels, spec_.alpha_channel, type};
+    return {spec_.width, spec_.height, spec_.depth, spec_.nchannels, spec_.alpha_channel, type,
+            spec_.tile_width > 0 ? spec_.tile_height : 0};
   }
-  [[nodiscard]] bool read(int channels, relook::TexelType type, void* texels, std::size_t texel_bytes) override {
+  [[nodiscard]] bool read_rows(int begin, int end, int channels, relook::TexelType type, void* texels,
+                               std::size_t texel_bytes) override {
     const OIIO::TypeDesc format = type == relook::TexelType::byte   ? OIIO::TypeDesc::UINT8
                                   : type == relook::TexelType::word ? OIIO::TypeDesc::UINT16
                                                                     : OIIO::TypeDesc::FLOAT;
-    return input_->read_image(0, 0, 0, channels, format, texels, static_cast<OIIO::stride_t>(texel_bytes));
+    const auto stride = static_cast<OIIO::stride_t>(texel_bytes);
+    const int first = spec_.y + begin, last = spec_.y + end;
+    if (spec_.tile_width == 0)
+      return input_->read_scanlines(0, 0, first, last, spec_.z, 0, channels, format, texels, stride);
+    return input_->read_tiles(0, 0, spec_.x, spec_.x + spec_.width, first, last, spec_.z, spec_.z + 1, 0, channels,
+                              format, texels, stride);
   }
   [[nodiscard]] std::string error() const override { return input_->geterror(); }
 
