@@ -4,6 +4,7 @@
 
 #include "base/memory.h"
 #include "base/parallel.h"
+#include "cache/manifest.h"
 #include "edit/apply.h"
 #include "engine/chosen_parameters.h"
 #include "engine/frame_layers.h"
@@ -73,7 +74,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
   return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()), opened.image,
-          opened.scene_hash, opened.losses, opened.rebuilt, opened.tunnels};
+          opened.scene_hash, opened.losses, opened.rebuilt, opened.tunnels, opened.manifest};
 }
 
 /// The runs that are to be made, one a journal. Throws UsageError when anything is in the way of one.
@@ -125,7 +126,12 @@ class ReplayCommand {
  public:
   ReplayCommand(const Arguments& arguments, Console& console, const std::vector<Journal>& journals,
                 std::vector<RunPlan>& plans, const Json& manifest, std::shared_ptr<const DisplayView> view)
-      : arguments_(arguments), console_(console), journals_(journals), plans_(plans), view_(std::move(view)) {
+      : arguments_(arguments),
+        console_(console),
+        journals_(journals),
+        plans_(plans),
+        manifest_text_(manifest.dump(1) + "\n"),
+        view_(std::move(view)) {
     const Interrupt::Expendable nothing_made(console.interrupt());
     open_cache_anew();
     std::vector<std::string> damage = sentences(opened_.losses);
@@ -164,12 +170,17 @@ class ReplayCommand {
     const TraceScope reading = console_.span("read cache");
     residency_ = residency_of(arguments_, plans_.front().folder());
     opened_ = open_cache(arguments_.inputs[0], !arguments_.strict, residency_.get());
+    // The runs are planned, and perhaps begun, as of one cache.
+    if (manifest_text(*opened_.manifest) != manifest_text_)
+      throw Error(ExitCode::busy, arguments_.inputs[0], "",
+                  "another program has exchanged the cache meanwhile; the same command again replays the new one");
   }
 
   const Arguments& arguments_;
   Console& console_;
   const std::vector<Journal>& journals_;
   std::vector<RunPlan>& plans_;
+  std::string manifest_text_;  // of the cache that the runs are of
   std::shared_ptr<const DisplayView> view_;
   std::unique_ptr<Residency> residency_;
   OpenedCache opened_;

@@ -58,7 +58,7 @@ std::string_view asset_text(std::string_view name) { return asset(name).text(); 
 
 std::string escaped_html(std::string_view text) {
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : without_reordering(text)) {
     switch (c) {
       case '&':
         escaped += "&amp;";
@@ -83,7 +83,7 @@ std::string escaped_html(std::string_view text) {
 }
 
 std::string script_json(const Json& value) {
-  const std::string text = json_text(value);
+  const std::string text = without_reordering(json_text(value));
   std::string escaped;
   escaped.reserve(text.size() + text.size() / 64);
   for (const char c : text) {

@@ -34,6 +34,15 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
+/// U+061C, U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069, at the start of `text`.
+bool is_reordering(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (text.size() >= 2 && byte(0) == 0xD8) return byte(1) == 0x9C;
+  if (text.size() < 3 || byte(0) != 0xE2) return false;
+  if (byte(1) == 0x80) return byte(2) == 0x8E || byte(2) == 0x8F || (byte(2) >= 0xA8 && byte(2) <= 0xAE);
+  return byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9;
+}
+
 }  // namespace
 
 Error::Error(ExitCode code, std::string_view file, std::string_view where, std::string_view what)
@@ -52,13 +61,27 @@ std::string printable(std::string_view text) {
     const std::size_t length = utf8_length(text);
     const bool is_c1_control =
         length == 2 && static_cast<unsigned char>(text[0]) == 0xC2 && static_cast<unsigned char>(text[1]) < 0xA0;
-    if (length == 0)
+    if (length == 0 || is_reordering(text))
       clean += '?';
     else if (length > 1 && !is_c1_control)
       clean += text.substr(0, length);
     else if (length == 1 && static_cast<unsigned char>(text[0]) >= 0x20 && text[0] != 0x7F)
       clean += text[0];
     text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return clean;
+}
+
+std::string without_reordering(std::string_view text) {
+  std::string clean;
+  clean.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    if (!is_reordering(text.substr(i, 3))) {
+      clean += text[i++];
+      continue;
+    }
+    clean += "\xEF\xBF\xBD";
+    i += utf8_length(text.substr(i));
   }
   return clean;
 }

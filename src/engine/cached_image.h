@@ -42,6 +42,7 @@ struct OpenedCache {
   CacheLosses losses;  // made good
   Moves rebuilt;       // for that
   std::shared_ptr<StoredTunnels> tunnels;  // null: the cache has none
+  std::shared_ptr<const Manifest> manifest;  // that all of it has been read by
 };
 /// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults, those of
 /// tunnels, which are not read otherwise, too. On a fault `opened` is untouched. `residency`: tiles leave memory for it

@@ -3,6 +3,7 @@
 //   and
 //                           all later calls that need space fail), short (this write writes half of its bytes)
 //   RELOOK_FAULT_COUNT=FILE the number of such calls is written there at the end
+//   RELOOK_EXCHANGE=n:A:B   before the n-th opening of a MANIFEST.json the folders A and B change names
 // Writes to standard output and error do not count.
 #include <dlfcn.h>
 #include <errno.h>
@@ -77,7 +78,22 @@ auto faulty(bool needs_space, const Call& call) -> decltype(call()) {
 
 bool changes_files(int flags) { return (flags & (O_WRONLY | O_RDWR | O_CREAT | O_DIRECTORY)) != 0; }
 
+/// Another program that exchanges two caches at the worst moment.
+void exchange_at(const char* path) {
+  static const char* const wish = getenv("RELOOK_EXCHANGE");
+  static std::atomic<long> openings{0};
+  constexpr const char* kName = "MANIFEST.json";
+  const size_t length = strlen(path);
+  if (wish == nullptr || length < strlen(kName) || strcmp(path + length - strlen(kName), kName) != 0) return;
+  if (++openings != atol(wish)) return;
+  const std::string text = strchr(wish, ':') + 1;
+  const size_t colon = text.find(':');
+  const auto real = next<int (*)(int, const char*, int, const char*, unsigned)>("renameat2");
+  (void)real(AT_FDCWD, text.substr(0, colon).c_str(), AT_FDCWD, text.substr(colon + 1).c_str(), 2 /* exchange */);
+}
+
 int open_by(const char* name, const char* path, int flags, mode_t mode) {
+  exchange_at(path);
   const auto real = next<int (*)(const char*, int, ...)>(name);
   if (!changes_files(flags) || strncmp(path, "/dev/", 5) == 0) return real(path, flags, mode);
   return faulty((flags & O_CREAT) != 0, [&] { return real(path, flags, mode); });
