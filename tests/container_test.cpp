@@ -30,9 +30,9 @@ Bytes file_of(const std::vector<float>& values) {
 
 TEST(Container, sizes_that_a_sections_bytes_cannot_have_are_damage) {
   const std::vector<float> values(10'000, 1.0F);
-  for (const std::uint64_t claimed : {std::uint64_t{1} << 63,
-                                      std::uint64_t{1} << 50, std::uint64_t{1} << 32, std::uint64_t{40'004},
-                                      std::uint64_t{39'996}, std::uint64_t{0}, ~std::uint64_t{3}}) {
+  for (const std::uint64_t claimed :
+       {std::uint64_t{1} << 63, std::uint64_t{1} << 50, std::uint64_t{1} << 32, std::uint64_t{40'004},
+        std::uint64_t{39'996}, std::uint64_t{0}, ~std::uint64_t{3}}) {
     Bytes file = file_of(values);
     put(file, kTable + kRawBytes, claimed);
     sign(file, 1);

@@ -172,13 +172,12 @@ TEST_F(ImportMemory, accessors_without_data_are_refused_before_columns_are_made)
   EXPECT_EQ(many.exit_code, 2) << many.output;
   EXPECT_LT(many.peak_mib, kBaseMiB);
 
-  scene["accessors"][2] = {{"componentType", 5126},
-                           {"count", std::uint64_t{1} << 31},
-                           {"type", "VEC3"},
-                           {"sparse",
-                            {{"count", 1},
-                             {"indices", {{"bufferView", 1}, {"componentType", 5123}}},
-                             {"values", {{"bufferView", 0}}}}}};
+  scene["accessors"][2] = {
+      {"componentType", 5126},
+      {"count", std::uint64_t{1} << 31},
+      {"type", "VEC3"},
+      {"sparse",
+       {{"count", 1}, {"indices", {{"bufferView", 1}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}}}};
   const Measured sparse = render(write("sparse.gltf", scene.dump()));
   EXPECT_EQ(sparse.exit_code, 2) << sparse.output;
   EXPECT_EQ(std::count(sparse.output.begin(), sparse.output.end(), '\n'), 1) << sparse.output;
@@ -273,8 +272,7 @@ TEST_F(ImportMemory, a_jpeg_of_endless_scans_is_refused) {
 }
 
 TEST_F(ImportMemory, the_image_that_was_found_by_attack_is_a_picture_or_a_line) {
-  const auto found =
-      std::filesystem::path(RELOOK_SOURCE_DIR).parent_path() / "shared/hostile/found/png16k_1bit.gltf";
+  const auto found = std::filesystem::path(RELOOK_SOURCE_DIR).parent_path() / "shared/hostile/found/png16k_1bit.gltf";
   if (!std::filesystem::exists(found)) GTEST_SKIP() << "NOT TESTED: there is no " << found;
   expect_refused(render(found.string(), "1G"), "/images/I: the image of 16384x16384 pixels takes 1366 MiB");
 }
