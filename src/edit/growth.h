@@ -31,6 +31,9 @@ inline constexpr std::size_t kDeepestLook = 64;  // levels of the look document,
 inline constexpr Extent kMostInEntry{100'000, 4U << 20U};
 inline constexpr Extent kMostCopied{1'000'000, 32U << 20U};
 
+/// What a copied node counts for beside its own values: it is named, compiled and drawn.
+inline constexpr std::uint64_t kValuesOfCopiedNode = 100;
+
 /// More than a whole journal may make or have: nothing after it is looked at.
 struct JournalLimitError : InputError {
   using InputError::InputError;

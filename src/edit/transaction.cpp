@@ -175,7 +175,8 @@ void Transaction::count_copy(const Json& value, const Tokens& to, const PatchPla
   Extent left = kMostCopied;
   left -= copied_before_;
   left -= copied_;
-  const Extent extent = extent_of(value, left);
+  Extent extent = extent_of(value, left);
+  if (is_node(to)) extent.values += kValuesOfCopiedNode;
   if (extent.exceeds(left))
     throw JournalLimitError(place.file, place.where,
                             "\"copy\" may make " + std::to_string(kMostCopied.values) + " values and " +
