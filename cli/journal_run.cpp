@@ -10,8 +10,8 @@
 #include "engine/compare.h"
 #include "engine/memory_needs.h"
 #include "engine/render.h"
-#include "report/places.h"
 #include "load_cache.h"
+#include "report/places.h"
 
 namespace relook {
 namespace {

@@ -1,10 +1,11 @@
 // A few kilobytes of journal never make gigabytes: copies within an edit and the frames of a journal are bounded.
+#include "edit/growth.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "edit/growth.h"
 #include "look_fixture.h"
 #include "report/edit_hashes.h"
 #include "run_program.h"
@@ -37,8 +38,8 @@ std::string journal_of(const std::vector<std::string>& steps) {
   return R"({"relook": "journal/1", "steps": [)" + text + "]}";
 }
 std::string range_wedge(const std::string& path, std::size_t count) {
-  return R"({"wedge": {"path": ")" + path + R"(", "range": {"from": 0.1, "to": 0.9, "count": )" + std::to_string(count) +
-         "}}}";
+  return R"({"wedge": {"path": ")" + path + R"(", "range": {"from": 0.1, "to": 0.9, "count": )" +
+         std::to_string(count) + "}}}";
 }
 Journal parsed(const std::vector<std::string>& steps) { return parse_journal(journal_of(steps), "j.json"); }
 
@@ -57,7 +58,8 @@ std::string refusal(const std::vector<std::string>& steps) {
 const std::string kGold = "/materials/Gold/extras/";
 const std::string kMostCopiedText =
     "\"copy\" may make 1000000 values and 33554432 bytes of text in a journal, and no more";
-const std::string kMostInEntryText = "\"copy\" may make an entry of 100000 values and 4194304 bytes of text, and no more";
+const std::string kMostInEntryText =
+    "\"copy\" may make an entry of 100000 values and 4194304 bytes of text, and no more";
 
 TEST(Growth, copies_into_themselves_end_where_values_would_lie_too_deep) {
   std::vector<std::string> operations{add(kGold + "a", R"({"b": 1})")};
@@ -70,9 +72,9 @@ TEST(Growth, moves_and_adds_end_where_values_would_lie_too_deep) {
   const std::string deep = std::string(40, '[') + std::string(40, ']');
   std::string below = kGold + "a";
   for (int i = 0; i < 39; ++i) below += "/0";
-  EXPECT_EQ(refusal({step_of({add(kGold + "a", deep), add(kGold + "b", deep),
-                              transfer("move", kGold + "b", below + "/0")})}),
-            "j.json: /steps/0/edit/2/path: this would nest values deeper than 64 levels");
+  EXPECT_EQ(
+      refusal({step_of({add(kGold + "a", deep), add(kGold + "b", deep), transfer("move", kGold + "b", below + "/0")})}),
+      "j.json: /steps/0/edit/2/path: this would nest values deeper than 64 levels");
   EXPECT_EQ(refusal({step_of({add(kGold + "a", deep), add(below + "/-", deep)})}),
             "j.json: /steps/0/edit/1/value: this would nest values deeper than 64 levels");
   EXPECT_EQ(refusal({step_of({add(kGold + "a", deep), R"({"op": "replace", "path": ")" + below + R"(", "value": )" +
@@ -81,7 +83,8 @@ TEST(Growth, moves_and_adds_end_where_values_would_lie_too_deep) {
 }
 
 TEST(Growth, doubling_copies_end_at_what_an_entry_may_have) {
-  std::vector<std::string> values{add(kGold + "a", "[0]")}, text{add(kGold + "a", "[\"" + std::string(1000, 'x') + "\"]")};
+  std::vector<std::string> values{add(kGold + "a", "[0]")},
+      text{add(kGold + "a", "[\"" + std::string(1000, 'x') + "\"]")};
   for (int i = 0; i < 30; ++i) {
     const std::string copy = transfer("copy", kGold + "a", kGold + "a/-");
     values.push_back(copy);
@@ -125,11 +128,9 @@ TEST(Growth, usual_copies_are_no_growth) {
 }
 
 TEST(Growth, a_journal_has_a_million_frames_at_most) {
-  const std::string lights = "/lights/Bulb/intensity", sentence =
-      "with this the journal has more than 1000000 frames, the most that one may have";
-  const auto refused = [&](const std::vector<std::string>& steps) {
-    return message_of([&] { (void)parsed(steps); });
-  };
+  const std::string lights = "/lights/Bulb/intensity",
+                    sentence = "with this the journal has more than 1000000 frames, the most that one may have";
+  const auto refused = [&](const std::vector<std::string>& steps) { return message_of([&] { (void)parsed(steps); }); };
   EXPECT_EQ(refused({range_wedge(lights, 1'000'000)}), "");
   EXPECT_EQ(refused({range_wedge(lights, 1'000'001)}), "j.json: /steps/0/wedge/range/count: " + sentence);
   EXPECT_EQ(refused({range_wedge(lights, 999'999), R"({"edit": []})"}), "");
@@ -173,7 +174,7 @@ class GrowthProgram : public ::testing::Test {
     const std::string path = (folder_ / "j.json").string();
     std::ofstream(folder_ / "scene.gltf") << kTriangle;
     std::ofstream(path) << journal;
-    std::vector<std::string> command{"sh", "-c", "ulimit -v 524288; exec \"$0\" \"$@\"", RELOOK_PROGRAM, "inspect",
+    std::vector<std::string> command{"sh", "-c",     "ulimit -v 524288; exec \"$0\" \"$@\"", RELOOK_PROGRAM, "inspect",
                                      path, "--quiet"};
     command.insert(command.end(), more.begin(), more.end());
     return run_program(command);

@@ -62,9 +62,9 @@ class FrameCount {
   /// Throws JournalLimitError at `place`, which asks for `frames` more, when these are too many.
   void add(std::size_t frames, const JsonView& place) {
     if (frames > kMostFrames - frames_)
-      throw JournalLimitError(place.file(), place.pointer(),
-                              "with this the journal has more than " + std::to_string(kMostFrames) +
-                                  " frames, the most that one may have");
+      throw JournalLimitError(
+          place.file(), place.pointer(),
+          "with this the journal has more than " + std::to_string(kMostFrames) + " frames, the most that one may have");
     frames_ += frames;
   }
 

@@ -27,10 +27,10 @@ using Edit = std::vector<PatchOperation>;
 /// memory of its text, whatever its count.
 struct Wedge {
   std::string path;
-  std::vector<Json> values;   // empty for a range
-  Json from, to;              // a range: numbers or arrays of as many numbers
-  std::size_t count = 0;      // of frames
-  std::string where;          // "/steps/3/wedge"
+  std::vector<Json> values;  // empty for a range
+  Json from, to;             // a range: numbers or arrays of as many numbers
+  std::size_t count = 0;     // of frames
+  std::string where;         // "/steps/3/wedge"
   [[nodiscard]] bool empty() const { return count == 0; }
   [[nodiscard]] std::size_t size() const { return count; }
   /// A "replace" of the value; of a range, `i` of `count` evenly spaced ones from `from` to `to`.
@@ -46,7 +46,7 @@ struct JournalStep {
   std::vector<std::string> select;  // drag: "/nodes/<name>" pointers
   std::vector<Edit> drag;           // one intermediate frame each; the last is committed
   Wedge wedge;
-  std::string where;                // "/steps/3"
+  std::string where;  // "/steps/3"
 };
 
 /// The frames of a step, each an edit: those of a drag or a wedge, or the one of a plain edit. Refers to the step.

@@ -85,7 +85,7 @@ class Transaction {
   std::set<TouchedEntity> touched_earlier_;  // by those before it in this transaction
   std::set<TouchedEntity> saved_;
   std::vector<std::pair<TouchedEntity, std::optional<Json>>> before_;  // in the order of touching
-  Extent copied_before_, copied_;  // by "copy", in earlier transactions and in this one
+  Extent copied_before_, copied_;          // by "copy", in earlier transactions and in this one
   std::map<TouchedEntity, Extent> grown_;  // entries that copies were made into, as they are then
   std::size_t mesh_count_;
   std::vector<std::string> new_geometry_, new_images_, new_instances_;
