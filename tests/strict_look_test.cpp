@@ -4,6 +4,9 @@
 
 #include <fstream>
 #include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "engine/cached_image.h"
@@ -69,7 +72,7 @@ constexpr const char* kEverything = R"({
     {"name": "Spot", "extensions": {"KHR_lights_punctual": {"light": 2}}},
     {"name": "Eye", "camera": 0, "translation": [0, 0, 6]}, {"name": "Above", "camera": 1}],
   "scenes": [{"nodes": [0, 3, 4, 5, 6, 7, 8], "extras": {"relook": {"ambient": [0.1, 0.1, 0.1],
-    "environment": {"color": [0.1, 0.2, 0.3], "intensity": 1, "rotation": 0.5, "image": 0}}}}], "scene": 0
+    "environment": {"color": [0.1, 0.2, 0.3], "intensity": 1, "rotation": 0.5, "image": "Dot"}}}}], "scene": 0
 })";
 
 const std::vector<Json>& wrong_values() {
@@ -218,10 +221,12 @@ TEST_F(StrictLook, a_caches_cameras_have_a_node_an_index_and_a_lens) {
   const SceneState state = imported(file_);
   const CacheContent sound = content_with_tunnels(state, {1, 2, 0}, {.tunnels = 0});
   const Json lens{{"node", "Eye"}, {"index", 0}, {"camera", Json::object()}};
-  for (const auto& [key, value] : Json{{"node", 5}, {"index", "x"}, {"index_", -1}, {"camera", nullptr}}.items()) {
+  const std::vector<std::pair<std::string, Json>> wrong{
+      {"node", 5}, {"index", "x"}, {"index", -1}, {"camera", nullptr}, {"camera", Json::array()}};
+  for (const auto& [key, value] : wrong) {
     CacheContent content = sound;
     content.document.cameras["Lens"] = lens;
-    content.document.cameras["Lens"][key == "index_" ? "index" : key] = value;
+    content.document.cameras["Lens"][key] = value;
     write_cache(folder_ / "c", content);
     CacheContent read;
     const CacheAnswer answer = read_cache(folder_ / "c", read);
