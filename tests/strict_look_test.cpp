@@ -4,6 +4,9 @@
 
 #include <fstream>
 #include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "engine/cached_image.h"
@@ -69,7 +72,7 @@ constexpr const char* kEverything = R"({
     {"name": "Spot", "extensions": {"KHR_lights_punctual": {"light": 2}}},
     {"name": "Eye", "camera": 0, "translation": [0, 0, 6]}, {"name": "Above", "camera": 1}],
   "scenes": [{"nodes": [0, 3, 4, 5, 6, 7, 8], "extras": {"relook": {"ambient": [0.1, 0.1, 0.1],
-    "environment": {"color": [0.1, 0.2, 0.3], "intensity": 1, "rotation": 0.5, "image": 0}}}}], "scene": 0
+    "environment": {"color": [0.1, 0.2, 0.3], "intensity": 1, "rotation": 0.5, "image": "Dot"}}}}], "scene": 0
 })";
 
 const std::vector<Json>& wrong_values() {
@@ -114,14 +117,14 @@ bool is_of_a_library(const std::string& sentence) {
   return false;
 }
 
-/// True if there is a scene; else the error must be ours and name a place.
+/// True if there is a scene; else the error must be ours, in the file (the whole of it where something is missing at its root).
 bool answers(const std::function<void()>& body, const std::string& file, const std::string& what) {
   try {
     body();
     return true;
   } catch (const InputError& error) {
     const std::string sentence = error.what();
-    EXPECT_TRUE(sentence.starts_with(file + ": /")) << what << ": " << sentence;
+    EXPECT_TRUE(sentence.starts_with(file + ": ")) << what << ": " << sentence;
     EXPECT_FALSE(is_of_a_library(sentence)) << what << ": " << sentence;
   } catch (const std::exception& error) {
     ADD_FAILURE() << what << ": " << error.what();
@@ -151,16 +154,17 @@ class StrictLook : public testing::Test {
 TEST_F(StrictLook, any_value_at_any_place_of_a_scene_file_gives_a_scene_or_a_place) {
   const Json sound = Json::parse(kEverything);
   ASSERT_NO_THROW((void)imported(file_));
-  std::size_t scenes = 0, errors = 0;
+  std::size_t scenes = 0, errors = 0, turn = 0;
   for (const Json::json_pointer& place : places_of(sound))
-    for (std::size_t kind = 0; kind < wrong_kinds(); ++kind) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t kind = turn++ % wrong_kinds();
       Json wrong = sound;
       set_wrong(wrong, place, kind);
       write_text(file_, wrong.dump());
       ++(answers([&] { (void)imported(file_); }, file_.string(), case_text(place, kind)) ? scenes : errors);
     }
   EXPECT_GT(scenes, 100U);
-  EXPECT_GT(errors, 1000U);
+  EXPECT_GT(errors, 500U);
 }
 
 TEST_F(StrictLook, any_value_at_any_place_of_a_look_document_gives_a_scene_or_a_place) {
@@ -200,7 +204,8 @@ TEST_F(StrictLook, any_value_at_any_place_of_a_caches_look_document_is_damage_or
   const CacheContent sound = content_with_tunnels(state, {1, 2, 0}, {.tunnels = 0});
   std::size_t turn = 0, damaged = 0;
   for (const Json::json_pointer& place : places_of(sound.document.look)) {
-    const std::size_t kind = turn++ % wrong_kinds();
+    if (turn++ % 4 != 0) continue;  // all of them go through SceneState above
+    const std::size_t kind = turn / 4 % wrong_kinds();
     CacheContent content = sound;
     set_wrong(content.document.look, place, kind);
     write_cache(folder_ / "c", content);
@@ -211,17 +216,19 @@ TEST_F(StrictLook, any_value_at_any_place_of_a_caches_look_document_is_damage_or
     ++damaged;
     EXPECT_EQ(answer.fault, CacheFault::damaged) << case_text(place, kind);
   }
-  EXPECT_GT(damaged, 100U);
+  EXPECT_GT(damaged, 50U);
 }
 
 TEST_F(StrictLook, a_caches_cameras_have_a_node_an_index_and_a_lens) {
   const SceneState state = imported(file_);
   const CacheContent sound = content_with_tunnels(state, {1, 2, 0}, {.tunnels = 0});
   const Json lens{{"node", "Eye"}, {"index", 0}, {"camera", Json::object()}};
-  for (const auto& [key, value] : Json{{"node", 5}, {"index", "x"}, {"index_", -1}, {"camera", nullptr}}.items()) {
+  const std::vector<std::pair<std::string, Json>> wrong{
+      {"node", 5}, {"index", "x"}, {"index", -1}, {"camera", nullptr}, {"camera", Json::array()}};
+  for (const auto& [key, value] : wrong) {
     CacheContent content = sound;
     content.document.cameras["Lens"] = lens;
-    content.document.cameras["Lens"][key == "index_" ? "index" : key] = value;
+    content.document.cameras["Lens"][key] = value;
     write_cache(folder_ / "c", content);
     CacheContent read;
     const CacheAnswer answer = read_cache(folder_ / "c", read);
