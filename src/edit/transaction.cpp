@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "scene/look_check.h"
 #include "scene/look_names.h"
 
 namespace relook {
@@ -290,7 +291,7 @@ void Transaction::normalize_entity(const TouchedEntity& entity, const Resolved& 
     load_image(entity.name, {file_, is_whole ? place.where + "/uri" : place.where});
   if (*section == Section::meshes && !value->contains(kGeometry) &&
       document().assets->mesh_primitives.contains(entity.name))
-    (*value)["extras"]["relook"]["geometry"] = entity.name;
+    set_relook_extra(*value, "geometry", entity.name);
   if (*section == Section::materials && resolved.path.size() > 3 && resolved.path.back() == "KHR_materials_unlit" &&
       value->contains(kModel))
     (*value)[kModel] = value->contains(kUnlit) ? "unlit" : "metallic-roughness";

@@ -80,19 +80,6 @@ void name_variants(const Json& gltf, LookDocument& document) {
     document.look["extensions"]["KHR_materials_variants"]["variants"] = names_of(variants, "variant");
 }
 
-/// extras.relook, made if need be; null where the file has something else in its place, which check_values() refuses.
-Json* relook_extras(Json& value) {
-  Json& extras = value["extras"];
-  if (extras.is_null()) extras = Json::object();
-  Json& relook = extras["relook"];
-  if (relook.is_null()) relook = Json::object();
-  return relook.is_object() ? &relook : nullptr;
-}
-
-void set_relook_extra(Json& value, const char* key, const std::string& name) {
-  if (Json* relook = relook_extras(value)) (*relook)[key] = name;
-}
-
 /// name_indices() for nodes' cameras, whose table has no order: in one step each, for any number of both.
 void name_camera(const std::vector<std::string>& cameras, Json& node) {
   const Json& index = member_or_empty(node, "camera");

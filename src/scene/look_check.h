@@ -29,6 +29,8 @@ void check_entity(const LookDocument& document, const TouchedEntity& entity, con
 /// The values of all entities: what names, bounds and cameras may read without a look at types.
 void check_values(const LookDocument& document);
 
+/// Sets extras.relook.<key> of an entity; not where something else stands in its place, which the checks refuse.
+void set_relook_extra(Json& value, const char* key, const std::string& text);
 /// Of a section, of "scene" or of "extensions".
 [[nodiscard]] const Schema& schema_of_entity(const std::string& section);
 /// "/materials/Gold", "/scene"

@@ -33,8 +33,8 @@ bool UniqueNames::take(const std::string& name) {
 std::string UniqueNames::give(std::string wanted) {
   if (take(wanted)) return wanted;
   std::size_t& suffix = next_suffix_.try_emplace(wanted, 2).first->second;
-  for (;; ++suffix) {
-    std::string candidate = wanted + "_" + std::to_string(suffix);
+  for (;;) {
+    std::string candidate = wanted + "_" + std::to_string(suffix++);
     if (take(candidate)) return candidate;
   }
 }
