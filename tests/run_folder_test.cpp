@@ -292,7 +292,7 @@ TEST_F(RunFolderTest, frames_that_were_not_verified_are_done_again_with_verify) 
 }
 
 TEST_F(RunFolderTest, two_commands_at_the_same_steps_meet_the_lock) {
-  write_journal("long.json", std::vector<Json>(400, color_step("same", 0.5)));
+  write_journal("long.json", std::vector<Json>(3000, color_step("same", 0.5)));  // long enough for a busy machine
   const pid_t child = fork();
   if (child == 0) _exit(replay("run", {"--quiet"}, "long.json").exit_code);
   for (int i = 0; i < 500 && !fs::exists(at("run/frames/0002.exr")); ++i) usleep(10'000);
