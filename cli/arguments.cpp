@@ -84,8 +84,7 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
                   "Percentage of the samples whose ray trees are kept, not just their paths");
   verb.add_option("--color-trees", raw.color_trees,
                   "Percentage of the samples whose colour trees a replay keeps between steps; 100");
-  verb.add_option("--tunnels", named.tunnels,
-                  "Most tunnels of a region, the last for all further paths; 0: none; 1")
+  verb.add_option("--tunnels", named.tunnels, "Most tunnels of a region, the last for all further paths; 0: none; 1")
       ->check(CLI::Range(0, 16));
   verb.add_option("--tunnel-levels", named.tunnel_levels,
                   "The lowest levels of the image's quadtree without tunnels; 2: squares of four pixels have some")
@@ -180,8 +179,9 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_view(preprocess, arguments, raw);
   add_look_patch(preprocess, arguments);
   add_structures(preprocess, arguments, raw);
-  preprocess.add_option("--disk", raw.disk,
-                        "Most disk for the cache, like 20G: ray trees and tunnels are left out where they are worth the least");
+  preprocess.add_option(
+      "--disk", raw.disk,
+      "Most disk for the cache, like 20G: ray trees and tunnels are left out where they are worth the least");
 
   CLI::App& replay = *app.add_subcommand("replay", "Replay journals against a cache: a frame per step and a report");
   add_inputs(replay, arguments, "CACHE JOURNAL", "Cache folder, then journals; -: standard input", 2, kMostJournals);
@@ -206,8 +206,9 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
           "Pointers to what is subject to change: colour trees are kept for each of these alone, from the start")
       ->type_name("POINTER");
   replay
-      .add_option("--policy", arguments.structures.policy,
-                  "What leaves memory first: weight (the paper's), plain-weight (without surface area), lru, size, gdsf")
+      .add_option(
+          "--policy", arguments.structures.policy,
+          "What leaves memory first: weight (the paper's), plain-weight (without surface area), lru, size, gdsf")
       ->check(CLI::IsMember({"weight", "plain-weight", "lru", "size", "gdsf"}));
   replay.add_option("--spill", arguments.spill, "Folder for what leaves memory; the run folder")
       ->check(CLI::ExistingDirectory);

@@ -52,7 +52,7 @@ struct Arguments {
   std::string output;
   ViewArguments view;
   StructureOptions structures;
-  NamedStructures named;  // of `structures`
+  NamedStructures named;                     // of `structures`
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
   std::size_t threads = 0;                   // 0: all
   bool quiet = false, json = false;
@@ -67,17 +67,17 @@ struct Arguments {
   bool float_frames = false;          // render, replay
   bool layers = false;                // render, replay: --aovs
   std::optional<double> verify_percent;
-  bool baseline = false;                 // replay
-  bool strict = false;                   // replay: no cache with damage, even such as can be made good
-  std::optional<StepRange> steps;        // replay
-  bool fresh = false;                    // replay: no frame of an earlier run is kept
-  ReportKind report = ReportKind::html;  // replay
-  std::string cache;                     // blame: folder, or "": where the run says; the same for `journal`
-  std::string spill;                     // replay: folder of the spill file; "": the run's
-  std::string access_log;                // replay: file, or ""
-  bool print_look = false;               // inspect
+  bool baseline = false;                  // replay
+  bool strict = false;                    // replay: no cache with damage, even such as can be made good
+  std::optional<StepRange> steps;         // replay
+  bool fresh = false;                     // replay: no frame of an earlier run is kept
+  ReportKind report = ReportKind::html;   // replay
+  std::string cache;                      // blame: folder, or "": where the run says; the same for `journal`
+  std::string spill;                      // replay: folder of the spill file; "": the run's
+  std::string access_log;                 // replay: file, or ""
+  bool print_look = false;                // inspect
   std::vector<std::string> view_options;  // inspect: those of VIEW that were given, as "--camera"
-  std::string scene;                     // inspect, replay, check
+  std::string scene;                      // inspect, replay, check
 
   Thresholds thresholds;                               // compare
   DisplayWhite white;                                  // compare: --peak

@@ -24,7 +24,8 @@ ExitCode run_check(const Arguments& arguments, Console& console) {
       report.worst = answer;
       report.findings.push_back(answer.file + ": " + answer.detail);
     } else if (const std::size_t wrong = wrong_tunnels(opened); wrong > 0) {
-      const std::string detail = std::string("tunnels of ") + std::to_string(wrong) + " tile(s) are not around the ray trees";
+      const std::string detail =
+          std::string("tunnels of ") + std::to_string(wrong) + " tile(s) are not around the ray trees";
       report.worst = {CacheFault::damaged, std::string(kTunnelsFolder), detail};
       report.findings.push_back(std::string(kTunnelsFolder) + ": " + detail);
     }

@@ -73,8 +73,13 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
 /// For another run from the same state.
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
-  return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()), opened.image,
-          opened.scene_hash, opened.losses, opened.rebuilt, opened.tunnels, opened.manifest};
+  return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()),
+          opened.image,
+          opened.scene_hash,
+          opened.losses,
+          opened.rebuilt,
+          opened.tunnels,
+          opened.manifest};
 }
 
 /// The runs that are to be made, one a journal. Throws UsageError when anything is in the way of one.

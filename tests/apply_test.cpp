@@ -373,15 +373,16 @@ TEST(Patch, replace_below_a_displacement_finds_its_texture_transform) {
   SceneState state = small_state();
   const std::string displacement = "/nodes/Sphere/extras/relook/displacement";
   (void)apply_json(
-      state, R"([{"op": "add", "path": "/nodes/Sphere/extras", "value": {"relook": {"displacement": {"texture": "Bumps"}}}},
+      state,
+      R"([{"op": "add", "path": "/nodes/Sphere/extras", "value": {"relook": {"displacement": {"texture": "Bumps"}}}},
                  {"op": "replace", "path": ")" +
-                 displacement + R"(/extensions/KHR_texture_transform/scale", "value": [2, 3]},
+          displacement + R"(/extensions/KHR_texture_transform/scale", "value": [2, 3]},
                  {"op": "replace", "path": ")" +
-                 displacement + R"(/extensions/KHR_texture_transform/offset/1", "value": 0.25},
+          displacement + R"(/extensions/KHR_texture_transform/offset/1", "value": 0.25},
                  {"op": "replace", "path": ")" +
-                 displacement + R"(/extensions/KHR_texture_transform/rotation", "value": 0.5},
+          displacement + R"(/extensions/KHR_texture_transform/rotation", "value": 0.5},
                  {"op": "replace", "path": ")" +
-                 displacement + R"(/texCoord", "value": 1}])");
+          displacement + R"(/texCoord", "value": 1}])");
   for (const Object& object : state.scene().objects) {
     if (object.node != "Sphere") continue;
     ASSERT_TRUE(object.displacement);

@@ -27,7 +27,8 @@ class CompareFiles : public testing::Test {
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return folder_ / name; }
   [[nodiscard]] static FrameComparison compare(const std::filesystem::path& a, const std::filesystem::path& b,
                                                const Thresholds& thresholds = {}) {
-    return compare_exr_files(ExrFile(read_file(a), "a"), ExrFile(read_file(b), "b"), thresholds, DisplayWhite()).comparison;
+    return compare_exr_files(ExrFile(read_file(a), "a"), ExrFile(read_file(b), "b"), thresholds, DisplayWhite())
+        .comparison;
   }
   [[nodiscard]] FrameComparison compare(const std::vector<FilePart>& a, const std::vector<FilePart>& b,
                                         const Thresholds& thresholds = {}) const {

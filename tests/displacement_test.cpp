@@ -112,9 +112,13 @@ TEST(Displacement, a_map_is_offset_scaled_and_turned_as_any_texture_is) {
     EXPECT_LT(lifted, mesh.positions.size());
   };
   heights_are(plain, [](Uv uv) { return uv; });
-  heights_are(checked_square([](TextureSlot& slot) { slot.offset = {0.21F, 0.4F}; }),
+  heights_are(checked_square([](TextureSlot& slot) {
+                slot.offset = {0.21F, 0.4F};
+              }),
               [](Uv uv) { return uv + Uv(0.21F, 0.4F); });
-  heights_are(checked_square([](TextureSlot& slot) { slot.scale = {2, 0.5F}; }),
+  heights_are(checked_square([](TextureSlot& slot) {
+                slot.scale = {2, 0.5F};
+              }),
               [](Uv uv) { return Uv(uv.x * 2, uv.y * 0.5F); });
   heights_are(checked_square([](TextureSlot& slot) {
                 slot.rotation = 1.5707963F;

@@ -6,10 +6,10 @@
 #include "engine/render.h"
 #include "engine/replay.h"
 #include "region_checks.h"
+#include "run_program.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
 #include "tunnel_caches.h"
-#include "run_program.h"
 
 namespace relook {
 namespace {

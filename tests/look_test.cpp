@@ -52,8 +52,8 @@ TEST(Look, names_given_are_those_of_a_search_from_two) {
   std::set<std::string> taken;
   UniqueNames unique([](const std::string& name) { return name == "B_3"; });
   for (const char* wanted : {"A", "A_2", "A", "A_2", "A", "B", "B", "A_2_2", "B", "B_2", "B", "A_3", "A_4", "A"}) {
-    const std::string expected = unique_name(
-        wanted, [&](const std::string& name) { return name == "B_3" || taken.contains(name); });
+    const std::string expected =
+        unique_name(wanted, [&](const std::string& name) { return name == "B_3" || taken.contains(name); });
     taken.insert(expected);
     EXPECT_EQ(unique.give(wanted), expected);
   }

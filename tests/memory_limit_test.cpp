@@ -52,8 +52,9 @@ class MemoryLimit : public testing::Test {
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] Measured replay(std::vector<std::string> options) const {
-    std::vector<std::string> command{"python3", "-c", kMeasure, RELOOK_PROGRAM, "replay", at("c"), at("j.json"), "-o",
-                                     at("run"), "--quiet", "--fresh", "--overwrite", "--threads", "2"};
+    std::vector<std::string> command{"python3",    "-c", kMeasure,  RELOOK_PROGRAM, "replay",  at("c"),
+                                     at("j.json"), "-o", at("run"), "--quiet",      "--fresh", "--overwrite",
+                                     "--threads",  "2"};
     command.insert(command.end(), options.begin(), options.end());
     const ProgramResult result = run_program(command);
     Measured measured;

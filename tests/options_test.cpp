@@ -144,26 +144,30 @@ TEST_F(Options, of_a_view_are_refused_where_the_view_is_fixed) {
       {{"inspect", journal, "--scene", "C", "--look", journal}, "--look", "is a cache"},
   };
   for (const Row& row : rows) expect_refused(row);
-  EXPECT_EQ(relook({"inspect", kScene, "--camera", "auto", "--samples", "4", "--resolution", "16x9", "--json"}).exit_code,
-            0)
+  EXPECT_EQ(
+      relook({"inspect", kScene, "--camera", "auto", "--samples", "4", "--resolution", "16x9", "--json"}).exit_code, 0)
       << "one VIEW for render, preprocess and inspect";
   EXPECT_EQ(relook({"inspect", journal, "--scene", kScene, "--camera", "auto"}).exit_code, 0);
 }
 
 TEST_F(Options, in_common_are_taken_by_every_verb) {
   const std::vector<std::vector<std::string>> commands{
-      {"render", "nothing.gltf", "-o", at("x.exr")},  {"preprocess", "nothing.gltf", "-o", "C"},
-      {"replay", "C", "J", "-o", "R"},        {"compare", "C", "R"},
-      {"inspect", "nothing.gltf"},            {"check", "C"},
-      {"tune", "J"},                          {"plan", "C", "J"},
-      {"blame", "R", "1,1"},                  {"journal", "variants", "nothing.gltf", "-o", "J"},
+      {"render", "nothing.gltf", "-o", at("x.exr")},
+      {"preprocess", "nothing.gltf", "-o", "C"},
+      {"replay", "C", "J", "-o", "R"},
+      {"compare", "C", "R"},
+      {"inspect", "nothing.gltf"},
+      {"check", "C"},
+      {"tune", "J"},
+      {"plan", "C", "J"},
+      {"blame", "R", "1,1"},
+      {"journal", "variants", "nothing.gltf", "-o", "J"},
       {"completions", "bash"},
   };
   for (std::vector<std::string> command : commands) {
     command = filled(command);
-    for (const std::string option :
-         {"--threads", "1", "--quiet", "--progress", "none", "--json", "--log-json", "--overwrite",
-          "--import-memory", "1G"})
+    for (const std::string option : {"--threads", "1", "--quiet", "--progress", "none", "--json", "--log-json",
+                                     "--overwrite", "--import-memory", "1G"})
       command.push_back(option);
     command.insert(command.end(), {"--trace", at("trace.json")});
     const ProgramResult result = relook(command);

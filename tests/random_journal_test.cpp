@@ -11,10 +11,10 @@
 #include "engine/replay.h"
 #include "random_changes.h"
 #include "region_checks.h"
+#include "run_program.h"
 #include "test_scenes.h"
 #include "tree_reader.h"
 #include "tunnel_caches.h"
-#include "run_program.h"
 
 namespace relook {
 namespace {
@@ -52,8 +52,8 @@ RegionOptions random_regions(Dice& dice) {
   if (dice.chance(0.3)) regions.most_tunnels = dice.below(1000);
   regions.color_trees = dice.one_of(std::vector<double>{0, 0.01, 0.1, 1});
   std::cout << "groups " << regions.groups << ", tunnels " << regions.tunnels << ", atoms " << regions.atoms
-            << ", color trees " << regions.color_trees << ", tunnel levels " << regions.tunnel_levels << ", most tunnels "
-            << regions.most_tunnels.value_or(~std::uint64_t{0}) << "\n";
+            << ", color trees " << regions.color_trees << ", tunnel levels " << regions.tunnel_levels
+            << ", most tunnels " << regions.most_tunnels.value_or(~std::uint64_t{0}) << "\n";
   return regions;
 }
 

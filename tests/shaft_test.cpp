@@ -184,7 +184,8 @@ double area_of_shadow(const Shaft& shaft, const Imath::V3d& direction) {
                           (corner & 4U) != 0 ? box->max.z : box->min.z);
       points.emplace_back(at.dot(u), at.dot(v));
     }
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  std::sort(points.begin(), points.end(),
+            [](const auto& a, const auto& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
   std::vector<Imath::V2d> hull;
   for (int half = 0; half < 2; ++half) {
     const std::size_t first = hull.size();

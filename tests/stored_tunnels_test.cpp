@@ -1,5 +1,5 @@
-// Tunnels in a cache (paper 3.4, 4.1, 4.3): they are those that a replay would build, are read when a step needs them and
-// not before, and whatever is wrong with them costs time, never a pixel.
+// Tunnels in a cache (paper 3.4, 4.1, 4.3): they are those that a replay would build, are read when a step needs them
+// and not before, and whatever is wrong with them costs time, never a pixel.
 #include "cache/stored_tunnels.h"
 
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <fstream>
 
 #include "base/hash.h"
-#include "edit/apply.h"
 #include "cache/manifest.h"
 #include "cache/tunnel_parts.h"
+#include "edit/apply.h"
 #include "engine/cached_tunnels.h"
 #include "engine/path_classes.h"
 #include "region/cell_tunnels.h"
@@ -28,7 +28,8 @@ const char* const kColor = R"([{"op": "replace", "path": "/materials/Matte/pbrMe
 const char* const kOptics = R"([{"op": "replace", "path": "/materials/Glass/extensions/KHR_materials_ior/ior",
                                  "value": 1.8}])";
 const char* const kMove = R"([{"op": "replace", "path": "/nodes/Ball/translation", "value": [0.4, 0.9, 0.3]}])";
-const char* const kMoveOther = R"([{"op": "replace", "path": "/nodes/MirrorBall/translation", "value": [-1.2, 1.1, 0.2]}])";
+const char* const kMoveOther =
+    R"([{"op": "replace", "path": "/nodes/MirrorBall/translation", "value": [-1.2, 1.1, 0.2]}])";
 const char* const kMoveLight = R"([{"op": "replace", "path": "/nodes/Lamp/translation", "value": [1.5, 4.2, 2.5]}])";
 
 std::vector<RegionOptions> shapes() {
@@ -189,7 +190,8 @@ TEST_F(StoredTunnelsTest, OfOtherRayTreesAreRefused) {
   const std::filesystem::path file = tunnel_files(cache_).front();
   const CacheContent content = content_with_tunnels(state, {1, 5}, {});
   const Manifest manifest = load_manifest(cache_);
-  const Bytes foreign = encode_tunnels(content, 0, manifest.identity, hash128(bytes_of("other trees")) + hash128(bytes_of("other paths")));
+  const Bytes foreign = encode_tunnels(content, 0, manifest.identity,
+                                       hash128(bytes_of("other trees")) + hash128(bytes_of("other paths")));
   ASSERT_EQ(foreign.size(), std::filesystem::file_size(file)) << "told apart by nothing but what they are bound to";
   std::ofstream(file, std::ios::binary | std::ios::trunc)
       .write(reinterpret_cast<const char*>(foreign.data()), static_cast<std::streamsize>(foreign.size()));
@@ -320,9 +322,10 @@ TEST_F(StoredTunnelsTest, LeaveMemoryAndComeBackFromTheCacheWithoutADisk) {
   std::uint64_t evicted = 0, reloaded = 0;
   for (int round = 0; round < 3; ++round)
     for (const char* edit : {kMove, kMoveOther}) {
-      const std::string back = std::string(edit).find("MirrorBall") != std::string::npos
-                                   ? R"([{"op": "replace", "path": "/nodes/MirrorBall/translation", "value": [-1, 1, 0.1]}])"
-                                   : R"([{"op": "replace", "path": "/nodes/Ball/translation", "value": [0.3, 0.8, 0.3]}])";
+      const std::string back =
+          std::string(edit).find("MirrorBall") != std::string::npos
+              ? R"([{"op": "replace", "path": "/nodes/MirrorBall/translation", "value": [-1, 1, 0.1]}])"
+              : R"([{"op": "replace", "path": "/nodes/Ball/translation", "value": [0.3, 0.8, 0.3]}])";
       for (const std::string& text : {std::string(edit), back}) {
         const StepResult step = replayer.step(edit_of_text(text), "budget", ".");
         evicted += step.counters.evicted.tunnels;
@@ -378,8 +381,8 @@ TEST(Preprocess, WritesTunnelsAndAReplayReadsThemOrSaysWhyNot) {
     return run_program(arguments);
   };
   const auto replayed = [&](const std::string& cache, const std::string& name, std::vector<std::string> options) {
-    std::vector<std::string> arguments{"replay", (folder / cache).string(), journal, "-o", (folder / name).string(),
-                                       "--verify"};
+    std::vector<std::string> arguments{"replay", (folder / cache).string(), journal,
+                                       "-o",     (folder / name).string(),  "--verify"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.output;

@@ -117,7 +117,8 @@ bool is_of_a_library(const std::string& sentence) {
   return false;
 }
 
-/// True if there is a scene; else the error must be ours, in the file (the whole of it where something is missing at its root).
+/// True if there is a scene; else the error must be ours, in the file (the whole of it where something is missing at
+/// its root).
 bool answers(const std::function<void()>& body, const std::string& file, const std::string& what) {
   try {
     body();
@@ -241,8 +242,9 @@ TEST_F(StrictLook, textures_are_checked_before_a_material_reads_them) {
   Json gltf = Json::parse(kEverything);
   gltf["textures"][1]["extras"]["relook"]["procedural"]["color1"] = Json::array();
   write_text(file_, gltf.dump());
-  EXPECT_EQ(message_of([&] { (void)imported(file_); }),
-            file_.string() + ": /textures/Stone/extras/relook/procedural/color1: expected an array of 3 numbers, got 0");
+  EXPECT_EQ(
+      message_of([&] { (void)imported(file_); }),
+      file_.string() + ": /textures/Stone/extras/relook/procedural/color1: expected an array of 3 numbers, got 0");
 }
 
 }  // namespace

@@ -56,8 +56,9 @@ struct ResourceError : Error {
 /// Aborts with the place when `condition` is false: a bug of ours, never an input error.
 void require(bool condition, const char* message, std::source_location place = std::source_location::current());
 
-/// `text` without control bytes and invalid UTF-8, and with marks in place of characters that would reorder or break the
-/// line (Unicode's bidirectional controls, its line and paragraph separators), so that names may go into logs and HTML.
+/// `text` without control bytes and invalid UTF-8, and with marks in place of characters that would reorder or break
+/// the line (Unicode's bidirectional controls, its line and paragraph separators), so that names may go into logs and
+/// HTML.
 [[nodiscard]] std::string printable(std::string_view text);
 
 /// Well-formed UTF-8 with U+FFFD in place of these characters, for text that is made of more than one line.

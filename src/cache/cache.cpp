@@ -212,7 +212,8 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
     findings.push_back(
         {{CacheFault::damaged, std::string(kManifestName), "the options do not have the hash given"}, {}});
 
-  const bool keeps_tunnels = has_tunnels(content.storage, content.camera) && reading.users.tunnels == TunnelReading::keep;
+  const bool keeps_tunnels =
+      has_tunnels(content.storage, content.camera) && reading.users.tunnels == TunnelReading::keep;
   content.around_tiles.resize(keeps_tunnels ? cache_tile_count(content.camera) : 0);
   content.tunnels.resize(content.around_tiles.size());
   const std::vector<PartFile> parts = parts_of(content);
@@ -334,7 +335,8 @@ CacheReport check_cache(const std::filesystem::path& path) {
 
   if (report.findings.empty() && count_pieces(reading.content) != reading.manifest.pieces) {
     report.findings.push_back(std::string(kManifestName) + ": the cache does not have as many pieces as it says");
-    report.worst = {CacheFault::damaged, std::string(kManifestName), "the cache does not have as many pieces as it says"};
+    report.worst = {CacheFault::damaged, std::string(kManifestName),
+                    "the cache does not have as many pieces as it says"};
   }
   look_for_strays(path, reading.manifest, report);
   return report;

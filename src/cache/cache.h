@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "base/json.h"
-#include "scene/image.h"
 #include "region/tile_tunnels.h"
 #include "region/tunnel_shape.h"
+#include "scene/image.h"
 #include "scene/look.h"
 #include "trace/ray_path.h"
 #include "trace/ray_tree.h"
@@ -24,8 +24,8 @@ struct StorageOptions {
   double ray_trees_percent = 100;           // of the samples; the others' hits are left out
   std::optional<std::uint64_t> disk_bytes;  // of the whole cache, at most
   TunnelShape tunnels{0, 2, std::nullopt};
-  std::uint32_t atoms = 0;  // depth of the node hierarchy from which tunnels count nodes as one object; 0: none
-  std::uint32_t groups = 4;          // of a replay that does not say otherwise: most paths of a group; 0: none
+  std::uint32_t atoms = 0;   // depth of the node hierarchy from which tunnels count nodes as one object; 0: none
+  std::uint32_t groups = 4;  // of a replay that does not say otherwise: most paths of a group; 0: none
   double color_trees_percent = 100;  // of such a replay: share of the samples whose colour trees are kept
   /// Are tunnels of a shape these? Where a region has one, paths make no difference.
   [[nodiscard]] bool has_tunnels_like(const TunnelShape& shape, std::uint32_t of_atoms) const {
@@ -96,9 +96,9 @@ struct CacheAnswer {
 void require_writable(const std::filesystem::path& path);
 
 /// Takes hits and tunnels out of `content`, those of the tile groups that are worth the least (paper 4.3: time to
-/// rebuild over bytes on disk, of tunnels times their surface area), until its cache is no larger than `bytes`. Throws ResourceError that names the least it takes.
-/// `tunnel_areas`: by tile, if there are tunnels, see PieceFacts. Times are estimates, so that a cache's bytes do not
-/// depend on a clock.
+/// rebuild over bytes on disk, of tunnels times their surface area), until its cache is no larger than `bytes`. Throws
+/// ResourceError that names the least it takes. `tunnel_areas`: by tile, if there are tunnels, see PieceFacts. Times
+/// are estimates, so that a cache's bytes do not depend on a clock.
 void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const double> tunnel_areas = {});
 
 /// What becomes of another cache that is at the path of a new one.
@@ -116,8 +116,8 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content,
 
 /// Damage that can be made good, because what is lost follows from the scene: frame, ray paths, ray trees.
 struct CacheLosses {
-  std::vector<CacheAnswer> faults;  // one a file, in the order of the files
-  std::vector<std::size_t> tiles;   // to be traced again, increasing; all of them when the paths are lost
+  std::vector<CacheAnswer> faults;   // one a file, in the order of the files
+  std::vector<std::size_t> tiles;    // to be traced again, increasing; all of them when the paths are lost
   std::vector<std::size_t> tunnels;  // of these tiles they are to be built again, increasing
   [[nodiscard]] bool empty() const { return faults.empty(); }
 };

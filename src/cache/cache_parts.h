@@ -1,4 +1,5 @@
-// The files that a cache consists of, beside its manifest: one a part, but of ray trees and tunnels one a group of tiles.
+// The files that a cache consists of, beside its manifest: one a part, but of ray trees and tunnels one a group of
+// tiles.
 #pragma once
 #include <array>
 #include <cstdint>

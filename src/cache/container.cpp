@@ -241,9 +241,8 @@ void ContainerReader::read_table(BytesView start, std::uint32_t count) {
       throw CacheDamage(CacheFault::truncated, "section " + printable(section.name) + " is cut short");
     Bytes copy;
     const BytesView first = file_.bytes(section.offset, std::min(section.stored_bytes, kFrameHeaderBytes), copy);
-    check_sound(
-        section.codec != kZstd || can_unpack_to(first, section.stored_bytes, section.raw_bytes),
-        "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
+    check_sound(section.codec != kZstd || can_unpack_to(first, section.stored_bytes, section.raw_bytes),
+                "the bytes of section " + printable(section.name) + " cannot unpack to the size that the table says");
     expected_offset += section.stored_bytes;
     sections_.push_back(std::move(section));
   }

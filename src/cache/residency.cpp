@@ -326,7 +326,9 @@ void Residency::require_floor() {
 /// Before anything has been measured, what all changes and what is done aside will need is foreseen, beside what is
 /// there. Later most of that is there.
 std::uint64_t Residency::floor_bytes() const {
-  const auto at_least_0 = [](std::int64_t bytes) { return static_cast<std::uint64_t>(std::max<std::int64_t>(bytes, 0)); };
+  const auto at_least_0 = [](std::int64_t bytes) {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(bytes, 0));
+  };
   std::uint64_t stays = is_aside_ ? before_aside_ : base_bytes_ + at_least_0(claimed_bytes_);
   for (const Kind& kind : kinds_)
     for (const Piece& p : kind.pieces) {

@@ -219,13 +219,13 @@ class Residency {
   std::uint64_t outside_bytes_ = 0;  // beside pieces: base, claims and reserve, or as measured if more
   MemoryNeeds needs_;
   bool is_aside_ = false;
-  std::uint64_t before_aside_ = 0;      // beside pieces, as work aside began
-  std::uint64_t aside_most_ = 0;        // beside pieces, the most that has been measured during it
+  std::uint64_t before_aside_ = 0;       // beside pieces, as work aside began
+  std::uint64_t aside_most_ = 0;         // beside pieces, the most that has been measured during it
   std::uint64_t outside_of_change_ = 0;  // outside_bytes_ as work aside began: of the change before it
   double gdsf_inflation_ = 0;
-  double seconds_per_byte_ = 1e-9;     // of the spill file, measured as it is used
+  double seconds_per_byte_ = 1e-9;        // of the spill file, measured as it is used
   double fetch_seconds_per_byte_ = 3e-9;  // of what is stored, measured likewise
-  std::vector<Candidate> candidates_;  // the next to leave last; made when needed, used up or for one change
+  std::vector<Candidate> candidates_;     // the next to leave last; made when needed, used up or for one change
   std::vector<Victim> victims_;
   std::uint32_t trims_left_;  // in this change
   bool tracks_pieces_ = false;

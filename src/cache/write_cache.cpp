@@ -23,7 +23,7 @@ void require_writable(const std::filesystem::path& path) { const StagedFolder re
 namespace {
 
 /// What can be left out of a cache: the hits or the tunnels of a group of tiles.
-struct Optional {
+struct Dispensable {
   PartFile part;
   std::uint64_t with = 0, without = 0;  // bytes of its file
   double seconds = 0;                   // to have it back, times how likely a tunnel is met
@@ -44,8 +44,8 @@ std::uint64_t file_bytes(const CacheContent& content, const CacheIdentity& ident
   return encode_tunnels(content, part.group, identity, std::string(kBoundDigits, '0')).size();
 }
 
-Optional take_hits(CacheContent& content, const CacheIdentity& identity, const PartFile& part, Taken& taken) {
-  Optional option{part, file_bytes(content, identity, part)};
+Dispensable take_hits(CacheContent& content, const CacheIdentity& identity, const PartFile& part, Taken& taken) {
+  Dispensable option{part, file_bytes(content, identity, part)};
   const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
     TileTrees& trees = content.trees[tile];
@@ -58,9 +58,9 @@ Optional take_hits(CacheContent& content, const CacheIdentity& identity, const P
 }
 
 /// `areas`: see fit_to_disk(). Comes before the hits are taken.
-Optional take_tunnels(CacheContent& content, const CacheIdentity& identity, const PartFile& part,
-                      std::span<const double> areas, Taken& taken) {
-  Optional option{part, file_bytes(content, identity, part)};
+Dispensable take_tunnels(CacheContent& content, const CacheIdentity& identity, const PartFile& part,
+                         std::span<const double> areas, Taken& taken) {
+  Dispensable option{part, file_bytes(content, identity, part)};
   const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
     option.seconds += kTunnelSeconds * static_cast<double>(content.trees[tile].hits.size()) * areas[tile];
@@ -87,7 +87,7 @@ void put_back(CacheContent& content, const PartFile& part, Taken& taken) {
 void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const double> tunnel_areas) {
   const CacheIdentity identity{content.scene_hash, options_hash(content)};
   const std::vector<PartFile> parts = parts_of(content);
-  std::vector<Optional> options(parts.size());
+  std::vector<Dispensable> options(parts.size());
   Taken taken{std::vector<TileTrees>(content.trees.size()), std::vector<TileTunnels>(content.tunnels.size())};
   const auto for_each = [&](Part kind, const auto& take) {
     parallel_for(parts.size(), [&](std::size_t i) {
@@ -105,9 +105,9 @@ void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const dou
   }
   if (least > bytes)
     throw ResourceError("--disk", "this cache needs at least " + std::to_string((least + 1023) >> 10) + "K");
-  std::ranges::stable_sort(options, std::greater(), &Optional::weight);
+  std::ranges::stable_sort(options, std::greater(), &Dispensable::weight);
   std::uint64_t left = bytes - least;
-  for (const Optional& option : options) {
+  for (const Dispensable& option : options) {
     if (option.with == 0 || option.saved() > left) continue;
     left -= option.saved();
     put_back(content, option.part, taken);
@@ -119,9 +119,9 @@ namespace {
 /// Of tunnels: `manifest` has the files that they are bound to.
 CacheFile write_part(const std::filesystem::path& folder, const PartFile& part, const CacheContent& content,
                      const Manifest& manifest) {
-  const Bytes bytes = part.part == Part::tunnels
-                          ? encode_tunnels(content, part.group, manifest.identity, hashes_bound_to(manifest, part.group))
-                          : encode(part, content, manifest.identity);
+  const Bytes bytes = part.part == Part::tunnels ? encode_tunnels(content, part.group, manifest.identity,
+                                                                  hashes_bound_to(manifest, part.group))
+                                                 : encode(part, content, manifest.identity);
   CacheFile file{stem(part), bytes.size(), hash128(bytes)};
   if (part.part != Part::look) file.name += file.hash + ".rlk";
   write_file(folder / file.name, bytes);
@@ -159,9 +159,8 @@ void write_cache(const std::filesystem::path& path, const CacheContent& content,
     const auto has_tunnels = [](const PartFile& part) { return part.part == Part::tunnels; };
     const auto others = static_cast<std::size_t>(std::ranges::find_if(parts, has_tunnels) - parts.begin());
     manifest.files.resize(others);
-    parallel_for(others, [&](std::size_t i) {
-      manifest.files[i] = write_part(folder.path(), parts[i], content, manifest);
-    });
+    parallel_for(others,
+                 [&](std::size_t i) { manifest.files[i] = write_part(folder.path(), parts[i], content, manifest); });
     std::vector<CacheFile> of_tunnels(parts.size() - others);
     parallel_for(of_tunnels.size(), [&](std::size_t i) {
       of_tunnels[i] = write_part(folder.path(), parts[others + i], content, manifest);

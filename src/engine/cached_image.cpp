@@ -209,8 +209,8 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
   }
   if (is_broken) return {CacheFault::damaged, "trees", "a hit names a triangle that its object does not have"};
   auto tunnels = StoredTunnels::of_cache(path, content.manifest, image.paths);
-  opened = {std::move(state),  std::move(image), std::move(content.scene_hash),
-            std::move(losses), rebuilt,          std::move(tunnels), content.manifest};
+  opened = {std::move(state),   std::move(image), std::move(content.scene_hash), std::move(losses), rebuilt,
+            std::move(tunnels), content.manifest};
   return {};
 }
 

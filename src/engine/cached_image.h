@@ -39,9 +39,9 @@ struct OpenedCache {
   std::unique_ptr<SceneState> state;
   Image image;
   std::string scene_hash;
-  CacheLosses losses;  // made good
-  Moves rebuilt;       // for that
-  std::shared_ptr<StoredTunnels> tunnels;  // null: the cache has none
+  CacheLosses losses;                        // made good
+  Moves rebuilt;                             // for that
+  std::shared_ptr<StoredTunnels> tunnels;    // null: the cache has none
   std::shared_ptr<const Manifest> manifest;  // that all of it has been read by
 };
 /// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults, those of

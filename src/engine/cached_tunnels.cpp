@@ -76,7 +76,8 @@ std::size_t count_wrong_tunnels(const SceneState& state, const Image& image, Sto
     TreeEncloser trees(image, grow, tile, storage.tunnels.of_region, class_of);
     const TileGrid grid = tunnels ? tunnels->grid() : TileGrid(kTileLevel + 1);
     bool is_right = grid.regions() > 0 || trees.around() == *around;  // otherwise it follows from the cells
-    for (auto cell = static_cast<std::uint32_t>(tile % kCellStride); is_right && cell < grid.cells(); cell += kCellStride)
+    for (auto cell = static_cast<std::uint32_t>(tile % kCellStride); is_right && cell < grid.cells();
+         cell += kCellStride)
       is_right = are_tunnels(trees.of(grid.square_of(cell)), *tunnels, cell);
     wrong += is_right ? 0 : 1;
   });

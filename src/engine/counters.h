@@ -27,7 +27,7 @@ struct Counters {
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays and shadow segments against one known object
   std::uint64_t color_trees_evaluated = 0;
-  std::uint64_t tunnels_read = 0;  // tiles whose tunnels the cache holds and that were used for the first time
+  std::uint64_t tunnels_read = 0;    // tiles whose tunnels the cache holds and that were used for the first time
   Moves evicted, rebuilt, reloaded;  // rebuilt: worked out again after it had left or had become invalid
 
   Counters& operator+=(const Counters& other);

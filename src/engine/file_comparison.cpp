@@ -25,8 +25,7 @@ std::vector<ImagePair> matched(const ExrFile& a, const ExrFile& b) {
   std::vector<const ExrImage*> rest;
   for (const ExrImage& image : b.images()) rest.push_back(&image);
   for (const ExrImage& image : a.images()) {
-    const auto found =
-        std::ranges::find_if(rest, [&](const ExrImage* other) { return is_same_place(image, *other); });
+    const auto found = std::ranges::find_if(rest, [&](const ExrImage* other) { return is_same_place(image, *other); });
     pairs.push_back({&image, found == rest.end() ? nullptr : *found});
     if (found != rest.end()) rest.erase(found);
   }

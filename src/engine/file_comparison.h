@@ -13,8 +13,8 @@ struct FileComparison {
   Frame a, b;  // R, G, B and A of the first part that has them, if both files have them there; else empty
 };
 
-/// `white`: also PSNR with this peak, SSIM and FLIP, for pictures that differ. Throws InputError for files that are not read, display
-/// windows of two sizes, and data windows too far apart.
+/// `white`: also PSNR with this peak, SSIM and FLIP, for pictures that differ. Throws InputError for files that are not
+/// read, display windows of two sizes, and data windows too far apart.
 [[nodiscard]] FileComparison compare_exr_files(const ExrFile& a, const ExrFile& b, const Thresholds& thresholds,
                                                const std::optional<DisplayWhite>& white);
 

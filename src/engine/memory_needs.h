@@ -1,5 +1,5 @@
-// What a replay under --memory will need beside pieces, foreseen from the scene: for the floor that it names, and for the
-// first full render of --verify. What follows is measured (cache/RESIDENCY.md).
+// What a replay under --memory will need beside pieces, foreseen from the scene: for the floor that it names, and for
+// the first full render of --verify. What follows is measured (cache/RESIDENCY.md).
 #pragma once
 #include <cstddef>
 #include <cstdint>

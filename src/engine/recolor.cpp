@@ -132,20 +132,9 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   std::vector<bool> grouped_tiles;
   if (!found.works.empty() && known_leaves == nullptr)
     grouped_tiles = tiles_with_tasks(stored_.regions(), found.tasks, result.counters.by_groups);
-  const UpdatePass pass{image,
-                        stored_.lights(),
-                        grow,
-                        change,
-                        found.tasks,
-                        stored_.classes(),
-                        stored_.index(),
-                        stored_.regions(),
-                        nullptr,
-                        near_tiles,
-                        grouped_tiles,
-                        known_leaves,
-                        programs_,
-                        stored_.residency()};
+  const UpdatePass pass{image,           stored_.lights(),   grow,    change,     found.tasks,   stored_.classes(),
+                        stored_.index(), stored_.regions(),  nullptr, near_tiles, grouped_tiles, known_leaves,
+                        programs_,       stored_.residency()};
   parallel_for(found.works.size(), [&](std::size_t tile) {
     if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);
   });

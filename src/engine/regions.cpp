@@ -43,7 +43,8 @@ bool ImageRegions::may_have_tunnels(const Image& image) const {
   return !relook::cell_levels(options_.shape(), image.frame.width, image.frame.height).empty();
 }
 
-std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of) {
+std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const GrowScene& grow,
+                                                     const ClassOf& class_of) {
   cell_levels_ = cell_levels(options_.shape(), image.frame.width, image.frame.height);
   if (cell_levels_.empty()) return {};
   if (has_tunnels()) offer(nullptr, 0);  // these have been used up
@@ -108,8 +109,8 @@ void ImageRegions::build(const Image& image, const GrowScene& grow, std::size_t 
   const auto start = Clock::now();
   const TileGrid grid(cell_levels_[tile]);
   TreeEncloser trees(image, grow, tile, options_.tunnels, class_of, lease(PieceKind::ray_trees, tile));
-  TileTunnels built = TileTunnels::built(grid, options_.tunnels,
-                                         [&](std::uint32_t cell) { return trees.of(grid.square_of(cell)); });
+  TileTunnels built =
+      TileTunnels::built(grid, options_.tunnels, [&](std::uint32_t cell) { return trees.of(grid.square_of(cell)); });
   Sections around = grid.regions() > 0 ? relook::around(built) : trees.around();
   const double seconds = seconds_since(start);
   keep(tile, std::move(built), std::move(around), seconds);

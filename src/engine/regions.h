@@ -17,12 +17,12 @@ namespace relook {
 
 /// Which structures are kept beside ray paths and ray trees.
 struct RegionOptions {
-  std::size_t groups = 4;   // most paths of a group; 0: none
-  std::size_t tunnels = 1;  // most of a region; 0: none
-  double ray_trees = 1;     // share of the samples whose ray trees are kept
-  double color_trees = 1;   // share of the samples whose colour trees are kept, over all sets of parameters
-  std::uint32_t atoms = 0;  // depth of the node hierarchy from which nodes count as one object; 0: none
-  std::uint32_t tunnel_levels = 2;            // the lowest levels of the quadtree without tunnels
+  std::size_t groups = 4;           // most paths of a group; 0: none
+  std::size_t tunnels = 1;          // most of a region; 0: none
+  double ray_trees = 1;             // share of the samples whose ray trees are kept
+  double color_trees = 1;           // share of the samples whose colour trees are kept, over all sets of parameters
+  std::uint32_t atoms = 0;          // depth of the node hierarchy from which nodes count as one object; 0: none
+  std::uint32_t tunnel_levels = 2;  // the lowest levels of the quadtree without tunnels
   std::optional<std::uint64_t> most_tunnels = std::nullopt;  // of the image; none: no limit
 
   [[nodiscard]] TunnelShape shape() const { return {tunnels, tunnel_levels, most_tunnels}; }
@@ -42,9 +42,9 @@ class ImageRegions {
 
   /// Groups of all tiles, afresh. `class_of`: see PathGroups.
   void build_groups(const Image& image, const ClassOf& class_of);
-  /// Tunnels of all tiles: those that are stored and still hold are there when they are first used, the others are built
-  /// afresh. `grow`: the scene in which the image's trees hold. Returns the tiles whose tunnels
-  /// were stored and cannot be read.
+  /// Tunnels of all tiles: those that are stored and still hold are there when they are first used, the others are
+  /// built afresh. `grow`: the scene in which the image's trees hold. Returns the tiles whose tunnels were stored and
+  /// cannot be read.
   std::vector<std::size_t> build_tunnels(const Image& image, const GrowScene& grow, const ClassOf& class_of);
   /// Tunnels of the image as it is now, in a cache. Comes before build_tunnels().
   void offer(std::shared_ptr<StoredTunnels> stored, std::size_t tiles);
@@ -104,8 +104,8 @@ class ImageRegions {
   std::vector<TileTunnels> tunnels_;
   std::vector<Sections> around_;  // by tile: around all of its trees, always resident
   TunnelPyramid image_tunnels_;
-  std::vector<LightEnd> lights_;  // when tunnels were built
-  double mean_area_ = 1;          // of a tile's tunnels then, square metres
+  std::vector<LightEnd> lights_;         // when tunnels were built
+  double mean_area_ = 1;                 // of a tile's tunnels then, square metres
   std::vector<std::uint8_t> was_there_;  // by tile: has it ever had tunnels, or are they stored?
   std::shared_ptr<StoredTunnels> stored_;
   std::vector<Leaves> stale_;  // by tile, before tunnels are built: leaves whose stored ones do not hold any more

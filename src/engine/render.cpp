@@ -92,10 +92,7 @@ class Merger {
  public:
   /// `tunnels`: null, or where those of the records go.
   Merger(const PathLayout& layout, Image& image, TunnelRecord* tunnels)
-      : layout_(layout),
-        image_(image),
-        tunnels_(tunnels),
-        classes_(tunnels != nullptr && !tunnels->atoms.empty()) {}
+      : layout_(layout), image_(image), tunnels_(tunnels), classes_(tunnels != nullptr && !tunnels->atoms.empty()) {}
 
   void merge(TileRecord& record, std::size_t tile) {
     std::vector<PathId> ids;
@@ -159,9 +156,9 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
   ProgramTable programs;
   std::vector<GrowCounters> counters(tiles.size());
   std::vector<TileRecord> records(keep ? tiles.size() : 0);
-  const std::vector<std::uint8_t> levels =
-      tunnels != nullptr ? cell_levels(tunnels->shape, image.frame.width, image.frame.height)
-                         : std::vector<std::uint8_t>();
+  const std::vector<std::uint8_t> levels = tunnels != nullptr
+                                               ? cell_levels(tunnels->shape, image.frame.width, image.frame.height)
+                                               : std::vector<std::uint8_t>();
   Pool<TileRenderer> renderers;
   std::atomic<std::size_t> done = 0;
   std::mutex progress_mutex;
@@ -199,8 +196,8 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
 }
 
 /// Renders every tile of a new image.
-Image render_image(const Scene& scene, const ViewOptions& view, bool keep, RenderStats& stats,
-                   const Progress& progress, TunnelRecord* tunnels, const MemoryMonitor& monitor = {}) {
+Image render_image(const Scene& scene, const ViewOptions& view, bool keep, RenderStats& stats, const Progress& progress,
+                   TunnelRecord* tunnels, const MemoryMonitor& monitor = {}) {
   const std::uint32_t width = scene.camera.width, height = scene.camera.height;
   Image image;
   image.view = view;

@@ -20,7 +20,8 @@ struct ParameterSet;
 class Replayer {
  public:
   /// Takes over a state and the image rendered from it (by preprocess() or from a cache). `residency`: with which the
-  /// cache was read, or with no pieces yet; null: no limit. `tunnels`: of the image, used if they are as the options say.
+  /// cache was read, or with no pieces yet; null: no limit. `tunnels`: of the image, used if they are as the options
+  /// say.
   Replayer(SceneState state, Image image, const RegionOptions& options = {},
            std::unique_ptr<Residency> residency = nullptr, std::shared_ptr<StoredTunnels> tunnels = nullptr);
   ~Replayer();

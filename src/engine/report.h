@@ -71,7 +71,7 @@ struct StructureOptions {
   std::uint32_t tunnels = 1, groups = 4, atoms = 0;
   std::uint32_t tunnel_levels = 2;            // the lowest levels without tunnels
   std::optional<std::uint64_t> most_tunnels;  // of the image; none: no limit
-  std::vector<std::string> params;  // pointers to parameters that are subject to change; empty: any may be
+  std::vector<std::string> params;            // pointers to parameters that are subject to change; empty: any may be
 };
 
 struct CacheSizes {

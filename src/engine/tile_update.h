@@ -15,8 +15,8 @@ class Residency;
 
 /// Where to look in a tile.
 struct TileWork {
-  Leaves leaves;                     // with samples that the change may reach
-  Leaves by_path;                    // of these, what the paths tell
+  Leaves leaves;   // with samples that the change may reach
+  Leaves by_path;  // of these, what the paths tell
   TileGrid tunnel_grid = kLeafGrid;
   std::vector<CellTouches> touched;  // of these, what tunnels tell about their segments
   RegionCounters by_groups, by_tunnels;

@@ -1,5 +1,5 @@
-// Tunnels of a tile in the making, while its ray trees come by in any order: around each cell's own trees. Regions above
-// the cells follow from these once all trees have been enclosed.
+// Tunnels of a tile in the making, while its ray trees come by in any order: around each cell's own trees. Regions
+// above the cells follow from these once all trees have been enclosed.
 #pragma once
 #include <vector>
 
@@ -11,8 +11,8 @@ class CellTunnels {
  public:
   /// `most`: tunnels of a region.
   CellTunnels(const TileGrid& grid, std::size_t most);
-  /// The tree of a sample at a pixel of a tile that is `width` pixels wide, whose nodes start at `root`. Trees of a cell
-  /// come in the order of their samples.
+  /// The tree of a sample at a pixel of a tile that is `width` pixels wide, whose nodes start at `root`. Trees of a
+  /// cell come in the order of their samples.
   void enclose(std::uint32_t pixel, std::uint32_t width, PathId path_class, const RayScene& scene,
                const TreeBlock& block, std::uint32_t root);
   [[nodiscard]] TileTunnels tunnels() const;

@@ -18,8 +18,8 @@ struct RegionSquare {
   std::uint32_t x = 0, y = 0, size = 0;
 };
 
-/// The regions of a tile from some level up. They are numbered level by level, the lowest first, row by row; the last is
-/// the tile itself. Regions of the lowest level are called cells.
+/// The regions of a tile from some level up. They are numbered level by level, the lowest first, row by row; the last
+/// is the tile itself. Regions of the lowest level are called cells.
 class TileGrid {
  public:
   /// `lowest`: the level of the cells, at most kTileLevel + 1: then there are no regions.
@@ -65,7 +65,7 @@ class TileGrid {
 /// Leaves are what is searched as one: the cells of groups.
 inline constexpr TileGrid kLeafGrid(2);
 inline constexpr std::uint32_t kLeafSize = 1U << kLeafGrid.lowest();  // pixels
-inline constexpr std::uint32_t kLeafSide = kLeafGrid.side();         // leaves along a tile
+inline constexpr std::uint32_t kLeafSide = kLeafGrid.side();          // leaves along a tile
 inline constexpr std::uint32_t kLeaves = kLeafGrid.cells();
 inline constexpr std::uint32_t kRegions = kLeafGrid.regions();
 static_assert(kLeaves == 256 && kLeaves + 64 + 16 + 4 + 1 == kRegions);

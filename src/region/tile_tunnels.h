@@ -1,6 +1,6 @@
 // The tunnels of one tile (paper 3.4): per region up to some number of tunnels, the first ones each for the ray trees
-// of one path, the last for all others. Cells, the lowest regions that have any, enclose their ray trees; a region above
-// encloses its four parts' tunnels, so that these follow from the cells'.
+// of one path, the last for all others. Cells, the lowest regions that have any, enclose their ray trees; a region
+// above encloses its four parts' tunnels, so that these follow from the cells'.
 #pragma once
 #include <functional>
 #include <span>
@@ -77,8 +77,8 @@ class TileTunnels {
   using TunnelsOfCell = std::function<std::span<const Tunnel>(std::uint32_t cell)>;
   /// `of_cell` is asked for one cell after the other.
   [[nodiscard]] static TileTunnels built(const TileGrid& grid, std::size_t most, const TunnelsOfCell& of_cell);
-  /// The tile's tunnels after the trees of some leaves have changed: `of_cell` gives those of cells with changed leaves,
-  /// all else is kept, regions above are united anew. Requires: built before, with as many of a region.
+  /// The tile's tunnels after the trees of some leaves have changed: `of_cell` gives those of cells with changed
+  /// leaves, all else is kept, regions above are united anew. Requires: built before, with as many of a region.
   [[nodiscard]] TileTunnels rebuilt(const Leaves& changed, std::size_t most, const TunnelsOfCell& of_cell) const;
 
  private:

@@ -197,7 +197,8 @@ double surface_area(std::span<const TunnelSection> tunnel, const std::vector<Lig
     for (std::size_t light = 0; !section.points.isEmpty() && light < lights.size(); ++light) {
       if (((section.open | section.blocked) & light_bit(light)) == 0) continue;
       const LightEnd& end = lights[light];
-      area += surface_area(end.directional ? extruded(section.points, end.end, extent) : Shaft{section.points, end.end});
+      area +=
+          surface_area(end.directional ? extruded(section.points, end.end, extent) : Shaft{section.points, end.end});
     }
   }
   return area;

@@ -40,8 +40,8 @@ struct LightEnd {
 };
 [[nodiscard]] std::vector<LightEnd> light_ends(const Scene& scene);
 
-/// Of all shafts of a tunnel together, those of rays that met nothing as far as the tunnel's own extent: in square metres,
-/// as the paper's 4.3 weighs it. Directions to lights as far, too.
+/// Of all shafts of a tunnel together, those of rays that met nothing as far as the tunnel's own extent: in square
+/// metres, as the paper's 4.3 weighs it. Directions to lights as far, too.
 [[nodiscard]] double surface_area(std::span<const TunnelSection> tunnel, const std::vector<LightEnd>& lights);
 
 /// A group of objects as boxes: the one around all, and if there are several objects smaller ones for parts of it.

@@ -17,10 +17,10 @@ struct TunnelShape {
   bool operator==(const TunnelShape&) const = default;
 };
 
-/// [tiles], numbered row by row: the level of a tile's cells, kTileLevel + 1 where it has just the one around all of it.
-/// Empty: no tunnels at all. With a limit on all tunnels the lowest levels go first, in some tiles sooner than in others,
-/// which are spread evenly; what a limit leaves nothing of is an image's tunnels from its tiles up. Of a region so many
-/// are counted as it may have.
+/// [tiles], numbered row by row: the level of a tile's cells, kTileLevel + 1 where it has just the one around all of
+/// it. Empty: no tunnels at all. With a limit on all tunnels the lowest levels go first, in some tiles sooner than in
+/// others, which are spread evenly; what a limit leaves nothing of is an image's tunnels from its tiles up. Of a region
+/// so many are counted as it may have.
 [[nodiscard]] std::vector<std::uint8_t> cell_levels(const TunnelShape& shape, std::uint32_t width,
                                                     std::uint32_t height);
 

@@ -287,8 +287,8 @@ void Compilation::update_light(const std::string& name, const Json& node, NodeRe
     return;
   }
   const auto& light_name = (*punctual)["light"].get_ref<const std::string&>();
-  Light light =
-      compile_light(context_.file, light_name, document_.look["lights"][light_name], "/lights/" + escape_token(light_name));
+  Light light = compile_light(context_.file, light_name, document_.look["lights"][light_name],
+                              "/lights/" + escape_token(light_name));
   light.node = name;
   const Imath::V3d back(record.world[2][0], record.world[2][1], record.world[2][2]);
   const double length = std::sqrt(back.x * back.x + back.y * back.y + back.z * back.z);

@@ -66,8 +66,8 @@ class Compilation {
 
   /// What was touched and its users. Throws InputError with scene and index as before.
   SceneDelta run(const std::vector<TouchedEntity>& touched);
-  /// Entities of a new scene, checked (look_check.h), of increasing places and without users as yet. Notes nothing of what was there before: an
-  /// error ends the scene.
+  /// Entities of a new scene, checked (look_check.h), of increasing places and without users as yet. Notes nothing of
+  /// what was there before: an error ends the scene.
   void run_first(const std::vector<CompiledEntity>& entities);
 
  private:

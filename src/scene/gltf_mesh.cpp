@@ -209,19 +209,18 @@ struct DecodedBytes {
 DecodedBytes decoded_bytes(const GltfModel& model, const GltfPrimitive& primitive) {
   if (!makes_triangles(primitive)) return {};
   constexpr std::array<std::pair<std::string_view, std::uint64_t>, 6> kColumns{{{"POSITION", sizeof(Point)},
-                                                                               {"NORMAL", sizeof(Normal)},
-                                                                               {"TANGENT", sizeof(Imath::V4f)},
-                                                                               {"TEXCOORD_0", sizeof(Uv)},
-                                                                               {"TEXCOORD_1", sizeof(Uv)},
-                                                                               {"COLOR_0", sizeof(Rgba)}}};
+                                                                                {"NORMAL", sizeof(Normal)},
+                                                                                {"TANGENT", sizeof(Imath::V4f)},
+                                                                                {"TEXCOORD_0", sizeof(Uv)},
+                                                                                {"TEXCOORD_1", sizeof(Uv)},
+                                                                                {"COLOR_0", sizeof(Rgba)}}};
   const std::uint64_t vertices = model.accessors[primitive.attributes.at("POSITION")].count;
   const std::uint64_t corners =
       primitive.indices == kNoIndex ? vertices : std::uint64_t{model.accessors[primitive.indices].count};
   const std::uint64_t triangles = primitive.mode == 4 ? corners / 3 : corners;
   DecodedBytes bytes{bounded_product(triangles, sizeof(std::array<std::uint32_t, 3>)), 0};
   for (const auto& [semantic, size] : kColumns)
-    if (primitive.attributes.contains(semantic))
-      bytes.kept = bounded_sum(bytes.kept, bounded_product(vertices, size));
+    if (primitive.attributes.contains(semantic)) bytes.kept = bounded_sum(bytes.kept, bounded_product(vertices, size));
   bytes.passing =
       bounded_sum(bounded_product(corners, sizeof(std::uint32_t)), bounded_product(vertices, sizeof(Imath::V3d)));
   return bytes;

@@ -59,7 +59,8 @@ std::vector<std::size_t> active_nodes(const Json& gltf) {
 }
 
 /// Their names in the order of the file.
-std::vector<std::string> name_cameras(const Json& gltf, const std::vector<std::size_t>& active, LookDocument& document) {
+std::vector<std::string> name_cameras(const Json& gltf, const std::vector<std::size_t>& active,
+                                      LookDocument& document) {
   const Json& cameras = member_or_empty(gltf, "cameras");
   const std::vector<std::string> names = names_of(cameras, "camera");
   document.cameras = Json::object();

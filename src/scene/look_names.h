@@ -16,8 +16,8 @@ namespace relook {
 /// `wanted` if it is free, else with the first free of "_2", "_3", ...
 [[nodiscard]] std::string unique_name(std::string wanted, const std::function<bool(const std::string&)>& is_taken);
 
-/// Gives many names: each `wanted` if it is free, else as unique_name() would. A search goes on where the last one for the
-/// same name ended, so that any number of equal names takes linear time; what is taken must stay taken.
+/// Gives many names: each `wanted` if it is free, else as unique_name() would. A search goes on where the last one for
+/// the same name ended, so that any number of equal names takes linear time; what is taken must stay taken.
 class UniqueNames {
  public:
   /// `is_taken`: besides the names given so far.

@@ -77,8 +77,8 @@ Field texture_transform() {
 Schema texture_info(std::vector<Field> extra = {}) {
   static const Schema relook{{unwritten(optional("mapping", mapping_schema()))}};
   static const Schema extras = wrapped("relook", relook, false);
-  Schema info{{name("index", Target::textures, true), texture_coordinates(), texture_transform(),
-               optional("extras", extras)}};
+  Schema info{
+      {name("index", Target::textures, true), texture_coordinates(), texture_transform(), optional("extras", extras)}};
   for (Field& field : extra) info.fields.push_back(std::move(field));
   return info;
 }

@@ -31,7 +31,12 @@ class OiioImage final : public relook::ImageReader {
     const relook::TexelType type = spec_.format == OIIO::TypeDesc::UINT8    ? relook::TexelType::byte
                                    : spec_.format == OIIO::TypeDesc::UINT16 ? relook::TexelType::word
                                                                             : relook::TexelType::real;
-    return {spec_.width, spec_.height, spec_.depth, spec_.nchannels, spec_.alpha_channel, type,
+    return {spec_.width,
+            spec_.height,
+            spec_.depth,
+            spec_.nchannels,
+            spec_.alpha_channel,
+            type,
             spec_.tile_width > 0 ? spec_.tile_height : 0};
   }
   [[nodiscard]] bool read_rows(int begin, int end, int channels, relook::TexelType type, void* texels,
