@@ -50,6 +50,13 @@ std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folde
   return entries;
 }
 
+/// Where a link stands in place of a folder of the run, what lies beyond it is written to and never removed.
+std::vector<std::filesystem::path> entries_not_beyond_link(const std::filesystem::path& folder) {
+  std::error_code error;
+  const bool is_folder = std::filesystem::symlink_status(folder, error).type() == std::filesystem::file_type::directory;
+  return is_folder ? entries_of(folder) : std::vector<std::filesystem::path>();
+}
+
 std::string unfinished_name(const std::filesystem::path& path) {
   return std::string(name_of_temporary(path.filename().string()));
 }
@@ -363,7 +370,7 @@ void RunPlan::remove_replaced() const {
   for (const RunPart& part : kParts) {
     if (part.folder == "pixels" && !replaces_all_) continue;  // the page sees to its own
     const std::filesystem::path folder = folder_ / part.folder;
-    for (const std::filesystem::path& file : entries_of(folder)) {
+    for (const std::filesystem::path& file : entries_not_beyond_link(folder)) {
       const std::string unfinished = unfinished_name(file),
                         name = unfinished.empty() ? file.filename().string() : unfinished;
       if (!replaces_all_ && (!is_frame_stem(name) || stems.contains(frame_stem(name)))) continue;
@@ -386,7 +393,7 @@ void RunPlan::remove_unfinished_page() const {
 /// Temporary files of commands that were killed at the steps that are locked now, or while they wrote report.json.
 void RunPlan::remove_leftovers() const {
   for (const RunPart& part : kParts)
-    for (const std::filesystem::path& file : entries_of(folder_ / part.folder)) {
+    for (const std::filesystem::path& file : entries_not_beyond_link(folder_ / part.folder)) {
       const std::string name = unfinished_name(file);
       const bool is_ours =
           part.folder != "pixels" && is_frame_stem(name) && step_of(name) >= first_ && step_of(name) <= last_;

@@ -415,9 +415,11 @@ TEST_F(RunFolderTest, a_link_in_place_of_a_part_stays) {
   ASSERT_EQ(replay("run").exit_code, 0);
   fs::rename(at("run/frames"), at("elsewhere"));
   write_text("elsewhere/.DS_Store", "finder");
+  fs::copy(at("elsewhere/0005.exr"), at("elsewhere/0009.exr"));  // of a run that has more steps
   fs::create_directory_symlink(at("elsewhere"), at("run/frames"));
   ASSERT_EQ(replay("run", {"--float", "--overwrite"}).exit_code, 0);
   EXPECT_TRUE(fs::is_symlink(at("run/frames")));
+  EXPECT_TRUE(fs::exists(at("elsewhere/0009.exr"))) << "nothing beyond the link is removed";
   EXPECT_TRUE(fs::exists(at("elsewhere/0005.exr")) && fs::exists(at("elsewhere/.DS_Store")));
 }
 
