@@ -91,6 +91,7 @@ extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): the linker's names
 void __real_rtcIntersect1(void* scene, void* second, void* third);
 void __real_rtcOccluded1(void* scene, void* second, void* third);
+void* __real_rtcNewDevice(const char* config);
 void* __real_rtcNewScene(void* device);
 void __real_rtcAttachGeometryByID(void* scene, void* geometry, unsigned id);
 
@@ -114,6 +115,16 @@ void __wrap_rtcOccluded1(void* scene, void* context, void* ray) {
   __real_rtcOccluded1(scene, context, ray);
 }
 #endif
+
+void* __wrap_rtcNewDevice(const char* config) {
+  void* const device = __real_rtcNewDevice(config);
+  relook::Calls& all = relook::calls();
+  const std::lock_guard lock(all.mutex);
+  // Scenes of another device that was at the same address are gone with it.
+  std::erase_if(all.instances, [&](const auto& level) { return all.device_of[level.first] == device; });
+  std::erase_if(all.device_of, [&](const auto& scene) { return scene.second == device; });
+  return device;
+}
 
 void* __wrap_rtcNewScene(void* device) {
   void* scene = __real_rtcNewScene(device);
