@@ -53,14 +53,14 @@ Bytes encode_tunnels(const CacheContent& content, std::size_t group, const Cache
 
 TunnelReader::TunnelReader(const ByteSource& file, const CacheIdentity& identity, const StorageOptions& shape,
                            const Camera& camera, std::uint32_t samples, std::size_t group, const PathBounds& paths)
-    : reader_(file, identity),
-      of_region_(shape.tunnels.of_region),
-      camera_(camera),
-      samples_(samples),
-      paths_(paths),
-      levels_(cell_levels(shape.tunnels, camera.width, camera.height)) {
+    : reader_(file, identity), of_region_(shape.tunnels.of_region), camera_(camera), samples_(samples), paths_(paths) {
   const TileGroup tiles = cache_group(camera, samples, group);
   first_ = tiles.first;
+  // Of the group alone: a large image has many groups.
+  const std::vector<std::uint8_t> levels = cell_levels(shape.tunnels, camera.width, camera.height);
+  check_sound(levels.size() >= tiles.last, "the manifest allows no tunnels");
+  levels_.assign(levels.begin() + static_cast<std::ptrdiff_t>(tiles.first),
+                 levels.begin() + static_cast<std::ptrdiff_t>(tiles.last));
   const std::size_t count = tiles.last - tiles.first;
   constexpr std::uint64_t kBoundDigits = 64;
   check_sound(reader_.raw_bytes("bound_to") == kBoundDigits, "no two hashes in section bound_to");
@@ -96,7 +96,7 @@ std::uint64_t TunnelReader::raw_bytes(std::size_t tile) const {
 
 TileTunnels TunnelReader::tunnels(std::size_t tile) const {
   const std::size_t k = tile - first_;
-  const TileGrid grid(levels_.at(tile));
+  const TileGrid grid(levels_.at(k));
   TileTunnels::Cells cells;
   cells.counts = reader_.column<std::uint8_t>(section_name("cells", k), grid.cells());
   const std::uint64_t count = std::accumulate(cells.counts.begin(), cells.counts.end(), std::uint64_t{0});

@@ -35,7 +35,7 @@ class TunnelReader {
   Camera camera_;
   std::uint32_t samples_;
   PathBounds paths_;
-  std::vector<std::uint8_t> levels_;  // of the cells of the image's tiles
+  std::vector<std::uint8_t> levels_;  // of the cells of the group's tiles
   std::string bound_to_;
   std::vector<std::uint8_t> kept_;
   std::vector<Sections> around_;

@@ -120,22 +120,25 @@ void ImageRegions::keep(std::size_t tile, TileTunnels tunnels, Sections around, 
   around_[tile] = std::move(around);
   tunnels_[tile] = std::move(tunnels);
   was_there_[tile] = 1;
-  if (residency_ != nullptr)
-    residency_->set(PieceKind::tunnels, tile, tunnels_[tile].bytes(), seconds, relative_area(tile));
+  if (residency_ == nullptr || !residency_->is_watched()) return;
+  // While tunnels are first built there is no mean yet: measure_areas() follows.
+  const double area = mean_area_ > 0 ? surface_area(around_[tile], lights_) : 1;
+  residency_->set(PieceKind::tunnels, tile, tunnels_[tile].bytes(), seconds, relative_to_mean(area));
 }
 
 void ImageRegions::measure_areas() {
   if (residency_ == nullptr || !residency_->is_watched()) return;
+  std::vector<double> areas;
   double sum = 0;
-  for (const Sections& tunnel : around_) sum += surface_area(tunnel, lights_);
+  for (const Sections& tunnel : around_) sum += areas.emplace_back(surface_area(tunnel, lights_));
   mean_area_ = sum / static_cast<double>(around_.size());
   for (std::size_t tile = 0; tile < around_.size(); ++tile)
-    residency_->set_surface_area(PieceKind::tunnels, tile, relative_area(tile));
+    residency_->set_surface_area(PieceKind::tunnels, tile, relative_to_mean(areas[tile]));
 }
 
-double ImageRegions::relative_area(std::size_t tile) const {
-  const double area = mean_area_ > 0 ? surface_area(around_[tile], lights_) / mean_area_ : 1;
-  return std::isfinite(area) ? area : 1;
+double ImageRegions::relative_to_mean(double area) const {
+  const double relative = mean_area_ > 0 ? area / mean_area_ : 1;
+  return std::isfinite(relative) ? relative : 1;
 }
 
 void ImageRegions::enclose_tile(std::size_t tile, Sections& tunnel) const { enclose(tunnel, around_[tile]); }

@@ -93,7 +93,7 @@ class ImageRegions {
   /// Takes over the tunnels of a tile. `seconds`: that all of them took; none: some were there before.
   void keep(std::size_t tile, TileTunnels tunnels, Sections around, std::optional<double> seconds);
   void measure_areas();
-  [[nodiscard]] double relative_area(std::size_t tile) const;
+  [[nodiscard]] double relative_to_mean(double area) const;
   void enclose_tile(std::size_t tile, Sections& tunnel) const;
   [[nodiscard]] PathGroups groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const;
   RegionOptions options_;
