@@ -1,4 +1,5 @@
 // The oracle's hits: triangles, textures and normals as SHADING.md says under "At a hit".
+#include <array>
 #include <cmath>
 
 #include "reference_tracer.h"
@@ -17,6 +18,20 @@ Vec to_world(const Object& object, Vec p) {
 template <class T>
 T mixed(const T& a, const T& b, const T& c, double u, double v) {
   return a * static_cast<float>(1 - u - v) + b * static_cast<float>(u) + c * static_cast<float>(v);
+}
+
+/// What SHADING.md calls lift, in the world.
+Vec lift_of(const Mesh& mesh, const WorldTriangle& triangle, double u, double v, bool inside, const Imath::M44d& world) {
+  const auto& vertices = mesh.triangles[triangle.primitive];
+  const std::array<double, 3> weights{1 - u - v, u, v};
+  Vec p(0, 0, 0), lift(0, 0, 0), in_world;
+  for (std::size_t i = 0; i < 3; ++i) p += Vec(mesh.positions[vertices[i]]) * weights[i];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec n = Vec(mesh.normals[vertices[i]]) * (inside ? -1.0 : 1.0);
+    lift += n * (weights[i] * std::max((Vec(mesh.positions[vertices[i]]) - p).dot(n), 0.0));
+  }
+  world.multDirMatrix(lift, in_world);
+  return in_world;
 }
 
 }  // namespace
@@ -54,6 +69,15 @@ bool ReferenceTracer::is_hole(const WorldTriangle& triangle, double u, double v)
   if (material.alpha_mode != AlphaMode::mask) return false;
   Surface s = surface_at({&triangle, 0, u, v}, {Vec(0, 0, 0), Vec(0, 0, 1), 0, 0});
   return s.alpha < material.alpha_cutoff;
+}
+
+bool ReferenceTracer::is_met(const WorldTriangle& triangle, const LineHit& hit, Vec direction) const {
+  const Object& object = scene_.objects[triangle.object];
+  if (surface_optics(scene_.material(object.material), mesh_of(triangle.object)).culls_back) {
+    const double side = (triangle.b - triangle.a).cross(triangle.c - triangle.a).dot(direction);
+    if ((Imath::M44d(object.to_world).determinant() < 0 ? -side : side) > 0) return false;
+  }
+  return !is_hole(triangle, hit.u, hit.v);
 }
 
 Imath::V4d ReferenceTracer::texture(const Surface& s, Slot which) const {
@@ -142,13 +166,16 @@ ReferenceTracer::Surface ReferenceTracer::surface_at(const Found& found, const R
   s.width = ray.width + ray.spread * found.t;
   s.with_level = s.width > 0;
   s.n = s.ng;
+  s.lift = Vec(0, 0, 0);
   if (!s.mesh->normals.empty()) {
     const auto& [i, j, k] = s.mesh->triangles[s.triangle->primitive];
     world.inverse().transposed().multDirMatrix(
         Vec(s.mesh->normals[i]) * (1 - s.u - s.v) + Vec(s.mesh->normals[j]) * s.u + Vec(s.mesh->normals[k]) * s.v, s.n);
     s.n.normalize();
     if (s.n.dot(s.ng) < 0) s.n = -s.n;
+    s.lift = lift_of(*s.mesh, *s.triangle, s.u, s.v, s.inside, world);
   }
+  s.smooth = s.n;
   read_material(s);
   const Vec coat = bent_normal(s, Slot::clearcoat_normal, s.material->clearcoat_normal_scale);
   s.n = bent_normal(s, Slot::normal, s.material->normal_scale);

@@ -86,7 +86,7 @@ ReferenceTracer::Found ReferenceTracer::nearest(Vec origin, Vec direction) const
       const std::uint64_t key = scene_.objects[triangle.object].key, old = scene_.objects[best.triangle->object].key;
       if (key > old || (key == old && triangle.primitive > best.triangle->primitive)) continue;
     }
-    if (!is_hole(triangle, hit.u, hit.v)) best = {&triangle, hit.t, hit.u, hit.v};
+    if (is_met(triangle, hit, direction)) best = {&triangle, hit.t, hit.u, hit.v};
   }
   return best;
 }
@@ -114,7 +114,7 @@ Vec ReferenceTracer::visibility(Vec p, Vec toward, double distance, double footp
   std::vector<Found> crossings;
   for (const WorldTriangle& triangle : triangles_) {
     const LineHit hit = intersect(triangle, p, toward);
-    if (hit.inside && hit.t > 0 && hit.t < distance && !is_hole(triangle, hit.u, hit.v))
+    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, hit, toward))
       crossings.push_back({&triangle, hit.t, hit.u, hit.v});
   }
   std::sort(crossings.begin(), crossings.end(), [](const Found& a, const Found& b) { return a.t < b.t; });
@@ -145,9 +145,11 @@ std::vector<ReferenceTracer::Arriving> ReferenceTracer::lamps(const Surface& s) 
       const double t = (Vec(light.direction).dot(-toward) - outer) / std::max(inner - outer, 1e-3);
       irradiance *= std::pow(std::clamp(t, 0.0, 1.0), 2);
     }
-    if (s.ng.dot(toward) <= 0) continue;
-    const Vec start = s.p + s.ng * kOffset;
-    arriving.push_back({toward, irradiance * visibility(start, toward, distance, s.width / s.incidence)});
+    if (s.smooth.dot(toward) <= 0) continue;
+    const Vec start = s.p + s.lift * std::clamp(1 - s.ng.dot(toward) / 0.1, 0.0, 1.0) + s.ng * kOffset;
+    const Vec way = light.kind == LightKind::directional ? toward * distance : Vec(light.position) - start;
+    arriving.push_back(
+        {toward, irradiance * visibility(start, way.normalized(), way.length(), s.width / s.incidence)});
   }
   return arriving;
 }
@@ -196,6 +198,11 @@ double mirror_fade(double roughness) {
 }
 }  // namespace
 
+std::optional<Vec> ReferenceTracer::refracted_way(const Surface& s, double ior) {
+  const auto bent = refracted(s.view, s.n, s.inside ? ior : 1 / ior);
+  return bent || !s.inside ? bent : refracted(s.view, s.ng, ior);
+}
+
 Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const {
   const Material& m = *s.material;
   const double ior = m.ior, nv = std::max(s.n.dot(s.view), 1e-4), dielectric = 1 - s.metallic;
@@ -207,7 +214,7 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
   const auto fresnel = [&](double w) {
     return fd(w) * dielectric + (s.base + (Vec(1, 1, 1) - s.base) * w) * s.metallic;
   };
-  const double exact = fresnel_exact(nv, s.inside ? ior : 1 / ior);
+  const double exact = fresnel_exact(s.inside ? std::max(nv, s.ng.dot(s.view)) : nv, s.inside ? ior : 1 / ior);
   const double weight = s.optics.volume ? std::clamp((exact - r0) / (1 - r0), 0.0, 1.0) : schlick(nv);
   const double diffuse = dielectric * (1 - s.transmission), fade = mirror_fade(s.roughness);
   const bool interface_only = s.optics.volume && s.inside;
@@ -241,7 +248,7 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
     color += fresnel(weight) * fade * beer(s, s.inside, answer);
   }
   if (s.optics.refracts) {
-    const auto bent = refracted(s.view, s.n, s.inside ? ior : 1 / ior);
+    const auto bent = refracted_way(s, ior);
     if (!s.optics.bent || bent) {
       const Answer answer = spawn(s, ray, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
       const Vec filter = s.optics.volume && s.inside ? Vec(1, 1, 1) : s.base;
@@ -270,7 +277,7 @@ Vec ReferenceTracer::blinn_phong(const Surface& s, const Ray& ray) const {
   color += color_of(m.emissive) * Vec(glow.x, glow.y, glow.z) * double{m.emissive_strength};
   if (s.optics.reflects) color += spawn(s, ray, reflected(s, s.n), 1).color * double{m.reflection};
   if (s.optics.refracts) {
-    const auto bent = refracted(s.view, s.n, s.inside ? double{m.ior} : 1.0 / m.ior);
+    const auto bent = refracted_way(s, m.ior);
     if (bent) color += spawn(s, ray, *bent, 1).color * double{m.refraction};
   }
   return color;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "engine/image.h"
@@ -61,6 +62,7 @@ class ReferenceTracer {
     double u, v, width, incidence;  // incidence: |d . Ng|
     bool inside, with_level;
     Vec p, ng, n, nc, view;
+    Vec smooth, lift;  // the interpolated normal; towards the surface that the vertex normals stand for
     // from the textures
     Vec base;
     double alpha, coverage, metallic, roughness, occlusion, transmission;
@@ -71,6 +73,8 @@ class ReferenceTracer {
   };
 
   [[nodiscard]] bool is_hole(const WorldTriangle& triangle, double u, double v) const;
+  /// Is there a surface for a ray in this direction?
+  [[nodiscard]] bool is_met(const WorldTriangle& triangle, const LineHit& hit, Vec direction) const;
   [[nodiscard]] Found nearest(Vec origin, Vec direction) const;
   [[nodiscard]] Surface surface_at(const Found& found, const Ray& ray) const;
   [[nodiscard]] Imath::V4d texture(const Surface& s, Slot slot) const;
@@ -90,6 +94,8 @@ class ReferenceTracer {
   [[nodiscard]] Vec environment(Vec direction) const;
   [[nodiscard]] Vec reflected(const Surface& s, Vec normal) const;
   [[nodiscard]] Vec metallic_roughness(const Surface& s, const Ray& ray) const;
+  /// The refracted direction, if any: about the triangle's own normal where, inside, the bent one lets no light out.
+  [[nodiscard]] static std::optional<Vec> refracted_way(const Surface& s, double ior);
   [[nodiscard]] Vec blinn_phong(const Surface& s, const Ray& ray) const;
 
   const Scene& scene_;

@@ -49,7 +49,8 @@ void gather(std::uint32_t payload, const Gathering& from, const BlockColors& col
       return from_nodes(from, out, [&](const RayNode& node) { return colors.nodes[node.child[which]][axis]; });
     case Input::child_length:
       return from_nodes(from, out, [&](const RayNode& node) {
-        return from.block.nodes[node.child[static_cast<std::size_t>(axis)]].length;
+        const RayNode& child = from.block.nodes[node.child[static_cast<std::size_t>(axis)]];
+        return child.length - child.ray.travelled;
       });
     case Input::tint:
       return from_nodes(from, out, [&](const RayNode& node) {

@@ -74,7 +74,7 @@ class BaseLayer {
   /// Ambient light, mirror and transmission: what depends on the view alone.
   [[nodiscard]] Triple view_terms() {
     const bool volume = t_.builder().shape(Field::thickness).thick && may_transmit();
-    const Scalar weight = volume ? exact_weight(t_, nv_) : schlick(nv_);
+    const Scalar weight = volume ? exact_weight(t_, interface_cosine()) : schlick(nv_);
     const Triple dielectric = dielectric_fresnel(weight);
     const Triple mirror = fresnel(dielectric, weight);
     const Scalar fade = mirror_fade(roughness_);
@@ -100,6 +100,10 @@ class BaseLayer {
   [[nodiscard]] bool may_transmit() { return t_.builder().shape(Field::transmission).transmits; }
   [[nodiscard]] Scalar transmission() {
     return may_transmit() ? t_.textured(Field::transmission, Slot::transmission, 0) : t_.number(0);
+  }
+  /// From the inside, light leaves where the triangle or its vertex normals let it.
+  [[nodiscard]] Scalar interface_cosine() {
+    return t_.key().inside ? max(nv_, dot(t_.input3(Input::geometric), view_)) : nv_;
   }
   [[nodiscard]] Scalar child_length(Branch branch) {
     return t_.input(Input::child_length, static_cast<unsigned>(branch));

@@ -90,8 +90,9 @@ bool bends_normals_otherwise(const Material& before, const Material& after, cons
 
 ChangeClass material_change_class(const Material& before, const Material& after, const Mesh& mesh) {
   if (cut_out_changes(before, after)) return ChangeClass::geometric;
-  const SurfaceOptics optics = surface_optics(after, mesh);
-  if (surface_optics(before, mesh) != optics || bends_normals_otherwise(before, after, optics))
+  const SurfaceOptics optics = surface_optics(after, mesh), optics_before = surface_optics(before, mesh);
+  if (optics_before.culls_back != optics.culls_back) return ChangeClass::geometric;
+  if (optics_before != optics || bends_normals_otherwise(before, after, optics))
     return ChangeClass::optical;
   return ChangeClass::color;
 }

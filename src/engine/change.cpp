@@ -24,7 +24,8 @@ bool same_directions(const Material& a, const Material& b, const SurfaceOptics& 
 /// `optics`: of the object's mesh with `after`.
 std::uint8_t material_flags(const RayObject& before, const Material& after, const SurfaceOptics& optics) {
   unsigned flags = 0;
-  if (before.optics.cut_out != optics.cut_out || (optics.cut_out && !same_holes(*before.material, after)))
+  if (before.optics.cut_out != optics.cut_out || (optics.cut_out && !same_holes(*before.material, after)) ||
+      before.optics.culls_back != optics.culls_back)
     flags |= RayChange::moved | RayChange::shadows;
   if (before.optics.passes_light != optics.passes_light) flags |= RayChange::shadows;
   if (before.optics != optics || !same_directions(*before.material, after, optics)) flags |= RayChange::respawns;

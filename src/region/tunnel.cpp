@@ -122,6 +122,7 @@ void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, st
     }
     const RayObject& object = scene.object(node.object);
     extend(section.points, node.point.position, node.point.offset);
+    extend(section.points, node.point.position + node.point.lift, node.point.offset);
     section.slack = std::max(section.slack, distance_slack(node, object));
     for (std::size_t light = 0; light < lights; ++light) {
       const ShadowState state = block.lights[node.first_light + light].state;

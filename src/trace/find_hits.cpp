@@ -34,7 +34,11 @@ void HitFinder::find_node(const SpawnedRay& before, const SpawnedRay& now) {
   }
   RayNode node(kNoNode, 0, before);
   node.object = stored.object();
-  node.hit = rays_.hit(node.object, before);
+  Ray ray{before.origin, before.direction};
+  ray.behind = before.behind;  // found before
+  const Meeting meeting = rays_.meeting(node.object, ray);
+  node.hit = meeting.hit;
+  node.t = meeting.t;
   complete(node, g_.scene.object(node.object));
   hits_->push_back(node.hit);
   find_filters(node, stored);
@@ -77,8 +81,7 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
   }
   for (std::size_t b = 0; b < kBranches; ++b) {
     if (!stored.has_child(static_cast<Branch>(b))) continue;
-    const bool goes_as_before = (rays.mask >> b & 1U) != 0 && rays.rays[b].origin == old.rays[b].origin &&
-                                rays.rays[b].direction == old.rays[b].direction;
+    const bool goes_as_before = (rays.mask >> b & 1U) != 0 && rays.rays[b].is_same_way(old.rays[b]);
     if (goes_as_before)
       find_node(old.rays[b], rays.rays[b]);
     else

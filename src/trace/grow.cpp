@@ -20,7 +20,13 @@ class Expander {
     std::span<const Hit> hits;
     const PathNode node = take(stored_, hits);
     if (node.is_miss()) return index;
-    grower_.set_hit(index, node.object(), is_kept_ ? hits.front() : rays_.hit(node.object(), ray));
+    if (is_kept_) {
+      grower_.set_hit(index, node.object(), hits.front());
+    } else {
+      const Meeting meeting = rays_.meeting(node.object(), grower_.whole_ray(ray));
+      grower_.set_hit(index, node.object(), meeting.hit);
+      grower_.block().nodes[index].t = meeting.t;
+    }
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
     FilterReader filters(is_kept_ ? hits.subspan(1) : hits);
     ShadowSegment segment;

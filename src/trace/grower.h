@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <new>
 #include <span>
 #include <vector>
@@ -37,6 +38,16 @@ class Grower {
     node.first_light = static_cast<std::uint32_t>(b_.lights.size());
     if (b_.lights.size() + lights().size() > kNoNode) throw std::bad_alloc();  // more than first_light can tell
     b_.lights.resize(b_.lights.size() + lights().size());
+  }
+
+  /// The ray as it is traced: behind the hit that it goes straight on from.
+  [[nodiscard]] Ray whole_ray(const SpawnedRay& ray) const {
+    Ray whole{ray.origin, ray.direction};
+    whole.behind = ray.behind;
+    if (ray.goes_on() && std::isnan(ray.behind.t))
+      whole.behind.t =
+          Tracer::distance(g_.objects->of(ray.behind.object), {ray.origin, ray.direction}, ray.behind.hit.primitive);
+    return whole;
   }
 
   Spawned spawned(std::uint32_t index) {
@@ -121,7 +132,7 @@ class Grower {
   std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent, GrowCounters& counters) {
     const std::uint32_t index = append(ray, parent);
     ++counters.ray_updates;
-    trace_from(index, Tracer::intersect(*g_.level, {ray.origin, ray.direction}), counters);
+    trace_from(index, Tracer::intersect(*g_.level, whole_ray(ray)), counters);
     return index;
   }
 
@@ -129,6 +140,7 @@ class Grower {
   void trace_from(std::uint32_t index, const Meeting& meeting, GrowCounters& counters) {
     if (meeting.object.is_none()) return;
     set_hit(index, meeting.object, meeting.hit);
+    b_.nodes[index].t = meeting.t;
     if (!g_.scene.object(meeting.object).optics.spawns()) return;
     for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }

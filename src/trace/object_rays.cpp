@@ -10,12 +10,12 @@ void refuse_trees() {
   throw Error(ExitCode::damaged_cache, "", "", "stored ray trees do not fit the scene; preprocess again");
 }
 
-Hit ObjectRays::hit(ObjectId object, const SpawnedRay& ray) {
+Meeting ObjectRays::meeting(ObjectId object, const Ray& ray) {
   ++counters_.object_rays;
-  const Meeting meeting = Tracer::intersect(objects_->of(object), {ray.origin, ray.direction});
+  const Meeting meeting = Tracer::intersect(objects_->of(object), ray);
   if (meeting.object.is_none()) refuse_trees();
   ++found_;
-  return meeting.hit;
+  return meeting;
 }
 
 const std::vector<Crossing>& ObjectRays::filters(std::span<const std::uint32_t> objects, const ShadowSegment& segment) {

@@ -17,7 +17,7 @@ class ObjectRays {
   ObjectRays(const ObjectLevels* objects, GrowCounters& counters) : objects_(objects), counters_(counters) {}
 
   /// Where a ray meets the object.
-  [[nodiscard]] Hit hit(ObjectId object, const SpawnedRay& ray);
+  [[nodiscard]] Meeting meeting(ObjectId object, const Ray& ray);
   /// The crossings of a segment with transparent surfaces, in order. `objects`: those of the surfaces, in order, as in
   /// paths. Valid until the next call.
   [[nodiscard]] const std::vector<Crossing>& filters(std::span<const std::uint32_t> objects,

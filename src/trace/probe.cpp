@@ -46,7 +46,7 @@ class Prober {
 
  private:
   [[nodiscard]] bool meets(const RayNode& node, bool touched) {
-    Ray segment{node.ray.origin, node.ray.direction};
+    Ray segment = stored_segment(node.ray);
     if (touched && !node.object.is_none())
       segment.t_max = node.length + distance_slack(node, g_.scene.object(node.object));
     return tests_.tests_ray(touched, segment) && !Tracer::intersect(change_.moved_after, segment).object.is_none();

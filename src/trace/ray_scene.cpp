@@ -1,6 +1,7 @@
 #include "trace/ray_scene.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "scene/displacement.h"
@@ -30,6 +31,17 @@ float condition_number(const Transform& m, const Imath::M33f& cofactors, float d
     }
   const double condition = std::sqrt(linear) * std::sqrt(inverse) / (3 * std::fabs(double{det}));
   return condition < 1e6 ? static_cast<float>(std::max(condition, 1.0)) : 1e6F;  // singular ones too
+}
+
+/// Coincident hits: what is smaller lies upon what is larger, as decals do; among equals the name decides.
+std::uint64_t tie_key(const Object& object, const Box& bounds) {
+  constexpr unsigned kSizeBits = 16, kDroppedBits = 15;  // exponent and 8 bits of a positive float
+  float size = 0;
+  for (int axis = 0; axis < 3 && !bounds.isEmpty(); ++axis)
+    for (int i = 0; i < 3; ++i)
+      size += (bounds.max[i] - bounds.min[i]) * std::fabs(object.to_world[i][axis]);
+  const std::uint64_t rank = std::bit_cast<std::uint32_t>(size) >> kDroppedBits;
+  return rank << (64 - kSizeBits) | object.key >> kSizeBits;
 }
 
 /// Rounding errors of a hit follow the largest numbers added up on the way from object space to the world, anywhere on
@@ -104,7 +116,7 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
   ray_object.flipped = det < 0;
   ray_object.condition = condition_number(object.to_world, ray_object.normal_to_world, det);
   ray_object.alive = object.alive;
-  ray_object.key = object.key;
+  ray_object.key = tie_key(object, ray_object.mesh->bounds);
   ray_object.optics = surface_optics(material, *ray_object.mesh);
   return ray_object;
 }

@@ -19,7 +19,7 @@ struct RayObject {
   float offset = 0;             // metres along the normal that clear a hit of rounding errors
   bool flipped = false;         // negative determinant: counter-clockwise triangles are back faces
   bool alive = false;
-  std::uint64_t key = 0;  // orders coincident hits
+  std::uint64_t key = 0;  // orders coincident hits, the same whatever the history of edits
   SurfaceOptics optics;
 };
 

@@ -1,9 +1,18 @@
 // Which stored segments are tested against the selection, and which are ruled out before that, by what; inside
 // src/trace. Each segment is asked about once and counted then.
 #pragma once
+#include <algorithm>
+
 #include "trace/grow.h"
 
 namespace relook {
+
+/// A stored ray from where it was spawned on, as far as rounding tells; its end is to be set.
+[[nodiscard]] inline Ray stored_segment(const SpawnedRay& ray) {
+  Ray segment{ray.origin, ray.direction};
+  segment.t_min = std::max(ray.travelled - ray.travelled_slack, 0.0F);
+  return segment;
+}
 
 class SegmentTests {
  public:
@@ -47,7 +56,7 @@ class SegmentTests {
 
  private:
   [[nodiscard]] bool is_near(const Box& box, const Ray& ray) const {
-    return may_meet(box, change_.bounds.condition, ray.origin, ray.direction, ray.t_max);
+    return may_meet(box, change_.bounds.condition, ray.origin, ray.direction, ray.t_min, ray.t_max);
   }
   static bool culled(std::uint64_t& count) {
     ++count;

@@ -53,6 +53,36 @@ inline Normal unit_normal(const Normal& n, const Imath::M33f& to_world, const No
   return unit_or(scaled(scaled(n) * to_world), otherwise);
 }
 
+float largest_of(float a, float b, float c) {
+  return std::max(std::max(std::fabs(a), std::fabs(b)), std::fabs(c));
+}
+
+/// From a point of a triangle towards the planes through its vertices across their normals, weighted as the vertices
+/// are: onto the surface that they stand for, where that lies above the triangle (Hanika 2021, "Hacking the Shadow
+/// Terminator"). Object space.
+Direction smooth_lift(const Mesh& mesh, const Hit& hit, const Point& local, bool inside) {
+  const auto& triangle = mesh.triangles[hit.primitive];
+  const auto [w0, w1, w2] = weights(hit);
+  const float side = inside ? -1.0F : 1.0F;
+  const auto part = [&](std::uint32_t vertex, float weight) {
+    const Normal n = mesh.normals[vertex] * side;
+    return n * (weight * std::max((mesh.positions[vertex] - local).dot(n), 0.0F));
+  };
+  return part(triangle[0], w0) + part(triangle[1], w1) + part(triangle[2], w2);
+}
+
+/// Rounding errors of a hit follow the largest numbers added up on the way from object space to the world, anywhere on
+/// its triangle: near the origin they are as large as at its corners.
+float offset_of(const Transform& m, const Point& a, const Point& b, const Point& c) {
+  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place
+  const Point reach(largest_of(a.x, b.x, c.x), largest_of(a.y, b.y, c.y), largest_of(a.z, b.z, c.z));
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max(largest, std::fabs(m[3][axis]) + reach.x * std::fabs(m[0][axis]) +
+                                    reach.y * std::fabs(m[1][axis]) + reach.z * std::fabs(m[2][axis]));
+  return largest * kUlps;
+}
+
 }  // namespace
 
 SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction direction) {
@@ -61,9 +91,9 @@ SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction di
   SurfacePoint point;
   point.local = interpolate(mesh.positions, triangle, hit);
   point.position = to_world(object.to_world, point.local);
-  point.offset = object.offset;
-  const Point& a = mesh.positions[triangle[0]];
-  const Normal cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
+  const Point &a = mesh.positions[triangle[0]], &b = mesh.positions[triangle[1]], &c = mesh.positions[triangle[2]];
+  point.offset = offset_of(object.to_world, a, b, c);
+  const Normal cross = (b - a).cross(c - a);
   Normal front = unit_normal(cross, object.normal_to_world, Normal(0, 0, 1));
   if (object.flipped) front = -front;
   point.inside = front.dot(direction) > 0;
@@ -72,6 +102,7 @@ SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction di
   if (!mesh.normals.empty()) {
     point.shading = unit_normal(interpolate(mesh.normals, triangle, hit), object.normal_to_world, point.geometric);
     if (point.shading.dot(point.geometric) < 0) point.shading = -point.shading;
+    point.lift = vector_to_world(object.to_world, smooth_lift(mesh, hit, point.local, point.inside));
   }
   return point;
 }
@@ -153,6 +184,15 @@ Normal mapped_normal(const TangentFrame& frame, const SurfacePoint& point, Rgba 
 
 Rgba vertex_color(const Mesh& mesh, const Hit& hit) {
   return mesh.colors.empty() ? Rgba(1, 1, 1, 1) : interpolate(mesh.colors, mesh.triangles[hit.primitive], hit);
+}
+
+bool is_back_face(const RayObject& object, std::uint32_t primitive, Direction direction) {
+  const Mesh& mesh = *object.mesh;
+  const auto& triangle = mesh.triangles[primitive];
+  const Point& a = mesh.positions[triangle[0]];
+  const Normal cross = (mesh.positions[triangle[1]] - a).cross(mesh.positions[triangle[2]] - a);
+  const bool along = (scaled(cross) * object.normal_to_world).dot(direction) > 0;
+  return along != object.flipped;
 }
 
 bool is_covered(const RayObject& object, const Hit& hit) {

@@ -14,6 +14,7 @@ struct SurfacePoint {
   Normal shading{0, 0, 1};    // unit, interpolated, on the side of `geometric`; no normal map yet
   bool inside = false;        // the back of the triangle was met
   float offset = 0;           // metres along `geometric` that clear the surface of rounding errors
+  Direction lift{0, 0, 0};    // from `position` to the smooth surface that the vertex normals stand for, world
 };
 
 /// `direction`: unit, the way the ray travels.
@@ -48,6 +49,9 @@ struct TangentFrame {
 
 /// COLOR_0 at a hit, (1, 1, 1, 1) without vertex colours.
 [[nodiscard]] Rgba vertex_color(const Mesh& mesh, const Hit& hit);
+
+/// Does a ray meet the triangle from behind? `direction`: of any length, the way the ray travels.
+[[nodiscard]] bool is_back_face(const RayObject& object, std::uint32_t primitive, Direction direction);
 
 /// Coverage of a cut-out (alpha MASK) at a hit: false where there is a hole. Texture level 0.
 [[nodiscard]] bool is_covered(const RayObject& object, const Hit& hit);

@@ -43,9 +43,9 @@ struct SelectionBounds {
   Box moved, shadows_before, shadows_after;  // as the top levels of RayChange
   float condition = 1;
 };
-/// May the segment from `origin` along `direction`, as far as t_max, meet something in the box? Errs to true.
+/// May the segment from `origin` along `direction`, from t_min as far as t_max, meet something in the box? Errs to true.
 [[nodiscard]] bool may_meet(const Box& box, float condition, const Point& origin, const Direction& direction,
-                            float t_max);
+                            float t_min, float t_max);
 
 /// The touch of a history, or null.
 [[nodiscard]] inline const Touch* touch_of(const Touches& touches, History history) {

@@ -1,10 +1,12 @@
 #include "trace/tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <new>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -43,8 +45,9 @@ struct Query
 #endif
   const std::vector<Tracer::Placed>* placed = nullptr;
   const Ray* ray = nullptr;
-  Meeting nearest;                             // intersect()
-  float slack = 0;                             // intersect()
+  Meeting nearest;                             // intersect(), distance()
+  float slack = 0;                             // intersect(), distance()
+  std::optional<std::uint32_t> primitive;      // distance(): no other is met
   std::vector<Crossing>* crossings = nullptr;  // passes(), blockers()
   bool opaque_too = false;                     // blockers()
   bool is_short_of_memory = false;             // crossings are missing
@@ -68,6 +71,41 @@ float largest_component(const Imath::V3f& v) {
 float slack_of(const Ray& ray) { return 0x1p-17F * largest_component(ray.origin) / largest_component(ray.direction); }
 float reach(float t, const Query& query) { return t + 1e-4F * t + query.slack; }
 
+/// Is there a surface for this ray?
+bool is_met(const RayObject& object, const Hit& hit, const Query& query) {
+  if (object.optics.culls_back && is_back_face(object, hit.primitive, query.ray->direction)) return false;
+  return !object.optics.cut_out || is_covered(object, hit);
+}
+
+/// The triangle's positions.
+std::array<Point, 3> corners(const Mesh& mesh, std::uint32_t primitive) {
+  const auto& triangle = mesh.triangles[primitive];
+  return {mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]};
+}
+bool is_at_edge(const Hit& hit) {
+  constexpr float kWidth = 0x1p-17F;
+  return std::min(std::min(hit.u, hit.v), 1 - hit.u - hit.v) <= kWidth;
+}
+
+/// A ray that meets an edge or a corner meets the triangles around it: they are one surface, not one behind another.
+/// False for the two sides of a fold, and for triangles that lie upon each other.
+bool is_same_crossing(const RayObject& object, const Meeting& a, const Meeting& b, const Query& query) {
+  if (a.object != b.object || b.t > reach(a.t, query) || !is_at_edge(a.hit) || !is_at_edge(b.hit)) return false;
+  const auto of_a = corners(*object.mesh, a.hit.primitive), of_b = corners(*object.mesh, b.hit.primitive);
+  const auto shared = std::ranges::count_if(of_a, [&](const Point& p) { return std::ranges::count(of_b, p) > 0; });
+  if (shared == 0 || shared == 3) return false;
+  const auto faces = [&](const std::array<Point, 3>& p) {
+    return ((p[1] - p[0]).cross(p[2] - p[0]) * object.normal_to_world).dot(query.ray->direction) > 0;
+  };
+  return faces(of_a) == faces(of_b);
+}
+
+bool is_behind(const RayObject& object, const Meeting& candidate, const Query& query) {
+  const Meeting& last = query.ray->behind;
+  return last.object.is_none() ||
+         (last.nearer_than(candidate) && !is_same_crossing(object, last, candidate, query));
+}
+
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Tracer::Placed& placed = (*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)];
@@ -80,8 +118,9 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   candidate.hit = {RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)};
   candidate.t = RTCRayN_tfar(args->ray, 1, 0);
   candidate.key = placed.object->key;
-  const bool accepted = candidate.nearer_than(query.nearest) &&
-                        (!placed.object->optics.cut_out || is_covered(*placed.object, candidate.hit));
+  const bool accepted = candidate.nearer_than(query.nearest) && is_behind(*placed.object, candidate, query) &&
+                        (!query.primitive || candidate.hit.primitive == *query.primitive) &&
+                        is_met(*placed.object, candidate.hit, query);
   if (!accepted) {
     args->valid[0] = 0;
     return;
@@ -94,7 +133,7 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Tracer::Placed& placed = (*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)];
   const Hit hit{RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)};
-  if (placed.object == nullptr || (placed.object->optics.cut_out && !is_covered(*placed.object, hit))) {
+  if (placed.object == nullptr || !is_met(*placed.object, hit, query)) {
     args->valid[0] = 0;
     return;
   }
@@ -129,7 +168,7 @@ void set_ray(RTCRay& r, const Ray& ray) {
   r.dir_x = ray.direction.x;
   r.dir_y = ray.direction.y;
   r.dir_z = ray.direction.z;
-  r.tnear = 0;
+  r.tnear = ray.t_min;
   r.tfar = ray.t_max;
   r.time = 0;
   r.mask = 0xFFFFFFFFU;
@@ -142,6 +181,9 @@ void look_for_nearest(RTCScene scene, const std::vector<Tracer::Placed>& placed,
   start(query, placed);
   RTCRayHit ray_hit;
   set_ray(ray_hit.ray, *query.ray);
+  // Boxes are entered no nearer than what may come after the last hit; those in which it lies, too.
+  if (const Meeting& last = query.ray->behind; !last.object.is_none())
+    ray_hit.ray.tnear = std::max(ray_hit.ray.tnear, 2 * last.t - reach(last.t, query));
   ray_hit.ray.tfar = reach(query.nearest.t, query);
   ray_hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   ray_hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
@@ -239,7 +281,8 @@ struct Tracer::Impl {
   }
 
   GeometryHandle new_instance(const RayObject& object) {
-    const bool reports_crossings = object.optics.passes_light || object.optics.cut_out || count_blockers;
+    const SurfaceOptics& optics = object.optics;
+    const bool reports_crossings = optics.passes_light || optics.cut_out || optics.culls_back || count_blockers;
     const RTCScene bottom = bottom_level(object.mesh, reports_crossings);
     GeometryHandle handle = device.new_geometry(RTC_GEOMETRY_TYPE_INSTANCE);
     const RTCGeometry instance = handle.get();
@@ -333,6 +376,17 @@ Meeting Tracer::intersect(const TopLevel& level, const Ray& ray) {
   if (top.meets_overlay()) look_for_nearest(top.overlay.scene.get(), top.overlay.placed, query);
   if (query.nearest.object.is_none()) query.nearest.t = std::numeric_limits<float>::infinity();
   return query.nearest;
+}
+
+float Tracer::distance(const TopLevel& level, const Ray& ray, std::uint32_t primitive) {
+  if (level.empty() || !is_traceable(ray)) return std::numeric_limits<float>::infinity();
+  Query query;
+  query.ray = &ray;
+  query.slack = slack_of(ray);
+  query.nearest.key = ~std::uint64_t{0};
+  query.primitive = primitive;
+  look_for_nearest(level.impl_->base.scene.get(), level.impl_->base.placed, query);
+  return query.nearest.t;
 }
 
 bool Tracer::passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings) {

@@ -15,12 +15,6 @@
 
 namespace relook {
 
-struct Ray {
-  Point origin;
-  Direction direction;  // any length; t counts in its lengths
-  float t_max = std::numeric_limits<float>::infinity();
-};
-
 /// The nearest hit of a ray. `object` none: nothing was met.
 struct Meeting {
   ObjectId object = ObjectId::none();
@@ -32,6 +26,14 @@ struct Meeting {
     if (key != other.key) return key < other.key;
     return hit.primitive < other.hit.primitive;
   }
+};
+
+struct Ray {
+  Point origin;
+  Direction direction;  // any length; t counts in its lengths
+  float t_max = std::numeric_limits<float>::infinity();
+  float t_min = 0;
+  Meeting behind;  // object not none: a hit of this ray; only what comes after it is met
 };
 
 /// A surface that a shadow segment crosses.
@@ -93,6 +95,10 @@ class Tracer {
 
   /// Rays with a component that is not finite, or larger than 1e18, meet nothing.
   [[nodiscard]] static Meeting intersect(const TopLevel& level, const Ray& ray);
+
+  /// Where a ray meets a triangle that it is known to meet: the t of intersect(), bit for bit. `level`: over the
+  /// triangle's object alone. Infinity if it does not meet it.
+  [[nodiscard]] static float distance(const TopLevel& level, const Ray& ray, std::uint32_t primitive);
 
   /// False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent surfaces in
   /// order. `crossings` is cleared first.

@@ -44,31 +44,51 @@ Direction mirrored(const Direction& d, const Normal& n, const Normal& geometric)
 /// Collects the rays of one hit.
 class Spawner {
  public:
-  Spawner(const RayNode& node, std::uint32_t max_depth) : node_(node), may_spawn_(node.ray.generation < max_depth) {}
+  Spawner(const RayNode& node, const RayObject& object, std::uint32_t max_depth)
+      : node_(node), object_(object), may_spawn_(node.ray.generation < max_depth) {}
 
   /// `side`: +1 leaves on the side of the incoming ray, -1 on the other. `fresnel`: factor towards the cut-off.
   void add(Branch branch, const Direction& direction, float side, float fresnel) {
-    if (!may_spawn_) return;
+    SpawnedRay* ray = add(branch, fresnel);
+    if (ray == nullptr) return;
+    ray->origin = node_.point.position + node_.point.geometric * (side * node_.point.offset);
+    ray->direction = direction;
+    ray->cone_width = node_.ray.cone_width + node_.ray.cone_spread * node_.length;
+  }
+  /// A ray that goes straight on.
+  void add_straight(Branch branch, float fresnel) {
+    SpawnedRay* ray = add(branch, fresnel);
+    if (ray == nullptr) return;
+    ray->origin = node_.ray.origin;
+    ray->direction = node_.ray.direction;
+    ray->cone_width = node_.ray.cone_width;
+    ray->behind = {node_.object, node_.hit, node_.t, object_.key};
+    ray->travelled = node_.length;
+    ray->travelled_slack = distance_slack(node_, object_);
+  }
+  [[nodiscard]] const Spawned& result() const { return spawned_; }
+
+ private:
+  /// Null if there is none.
+  SpawnedRay* add(Branch branch, float fresnel) {
+    if (!may_spawn_) return nullptr;
     const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(branch));
     const float product = node_.ray.fresnel_product * fresnel;
     if (product < kFresnelCut) {
       spawned_.cut_mask |= bit;
-      return;
+      return nullptr;
     }
     SpawnedRay& ray = spawned_.rays[static_cast<std::size_t>(branch)];
-    ray.origin = node_.point.position + node_.point.geometric * (side * node_.point.offset);
-    ray.direction = direction;
-    ray.cone_width = node_.ray.cone_width + node_.ray.cone_spread * node_.length;
     ray.cone_spread = node_.ray.cone_spread;
     ray.fresnel_product = product;
     ray.generation = static_cast<std::uint8_t>(node_.ray.generation + 1);
     ray.branch = branch;
     spawned_.mask |= bit;
+    return &ray;
   }
-  [[nodiscard]] const Spawned& result() const { return spawned_; }
 
- private:
   const RayNode& node_;
+  const RayObject& object_;
   bool may_spawn_;
   Spawned spawned_;
 };
@@ -77,14 +97,17 @@ class Spawner {
 
 Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth) {
   const SurfaceOptics& optics = object.optics;
-  Spawner spawner(node, max_depth);
+  Spawner spawner(node, object, max_depth);
   if (!optics.spawns()) return spawner.result();
   const Material& material = *object.material;
   const Direction d = node.ray.direction;
   const Normal n = normal_of_slot(node, object, Slot::normal, material.normal_scale);
   const float cosine = std::fmax(-d.dot(n), 1e-4F);
   const float eta = node.point.inside && optics.bent ? 1.0F / optics.ior : optics.ior;
-  const float reflectance = optics.refracts ? dielectric_reflectance(std::fmin(cosine, 1.0F), eta) : 1.0F;
+  // From the inside of a smooth solid, light leaves where the triangle or its vertex normals let it.
+  const float flat_cosine = node.point.inside ? -d.dot(node.point.geometric) : 0.0F;
+  const float reflectance =
+      optics.refracts ? dielectric_reflectance(std::fmin(std::fmax(cosine, flat_cosine), 1.0F), eta) : 1.0F;
   const float counted = optics.dielectric_cut ? 1.0F : 0.0F;
   const auto factor = [&](float term) { return 1.0F - counted + counted * term; };
 
@@ -94,18 +117,24 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
                 coat_reflectance(std::fmin(std::fmax(-d.dot(coat), 1e-4F), 1.0F)));
   }
-  if (optics.refracts && !optics.bent) spawner.add(Branch::refraction, d, -1.0F, factor(1.0F - reflectance));
+  if (optics.refracts && !optics.bent) spawner.add_straight(Branch::refraction, factor(1.0F - reflectance));
   if (optics.bent) {
-    const float c = std::fmin(cosine, 1.0F);
-    const float sin2 = (1.0F - c * c) / (eta * eta);
+    const auto sin2_behind = [&](float c) { return (1.0F - c * c) / (eta * eta); };
+    const bool is_flat = flat_cosine > cosine && sin2_behind(std::fmin(cosine, 1.0F)) >= 1.0F;
+    const float c = std::fmin(is_flat ? flat_cosine : cosine, 1.0F);
+    const float sin2 = sin2_behind(c);
     if (sin2 < 1.0F) {
-      const Direction bent = d * (1.0F / eta) + n * (c / eta - std::sqrt(1.0F - sin2));
+      const Normal& towards = is_flat ? node.point.geometric : n;
+      const Direction bent = d * (1.0F / eta) + towards * (c / eta - std::sqrt(1.0F - sin2));
       // A bent shading normal may send the ray back to its own side: then it goes straight on.
       const bool goes_through = bent.dot(node.point.geometric) < 0;
-      spawner.add(Branch::refraction, goes_through ? unit(bent) : d, -1.0F, factor(1.0F - reflectance));
+      if (goes_through)
+        spawner.add(Branch::refraction, unit(bent), -1.0F, factor(1.0F - reflectance));
+      else
+        spawner.add_straight(Branch::refraction, factor(1.0F - reflectance));
     }
   }
-  if (optics.transparent) spawner.add(Branch::transparency, d, -1.0F, 1.0F);
+  if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
   return spawner.result();
 }
 
@@ -133,8 +162,12 @@ ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light) {
   ShadowSegment segment;
   const bool directional = light.kind == LightKind::directional;
   const Direction to_light = directional ? -light.direction : light.position - point.position;
-  segment.faces = point.geometric.dot(to_light) > 0;
-  segment.origin = point.position + point.geometric * point.offset;
+  segment.faces = point.shading.dot(to_light) > 0;
+  // A light near the horizon of the triangle is judged from the smooth surface.
+  constexpr float kHorizon = 0.1F;  // cosine
+  const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));
+  const float share = std::fmin(std::fmax(1.0F - height / kHorizon, 0.0F), 1.0F);
+  segment.origin = point.position + point.lift * share + point.geometric * point.offset;
   segment.direction = directional ? to_light : light.position - segment.origin;
   segment.t_max = directional ? std::numeric_limits<float>::infinity() : 1.0F;
   return segment;

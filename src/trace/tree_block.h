@@ -3,17 +3,20 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "trace/ray_path.h"
 #include "trace/surface.h"
+#include "trace/tracer.h"
 
 namespace relook {
 
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
 
-/// A ray on its way: the primary ray of a sample, or one spawned by a hit.
+/// A ray on its way: the primary ray of a sample, or one spawned by a hit. One that goes straight on has no origin of
+/// its own: it is the ray that it comes from, behind that hit.
 struct SpawnedRay {
   Point origin{0, 0, 0};
   Direction direction{0, 0, -1};  // unit
@@ -22,6 +25,14 @@ struct SpawnedRay {
   float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
   std::uint8_t generation = 1;    // 1: primary
   Branch branch = Branch::primary;
+  Meeting behind;             // the hit that it goes straight on from; t NaN: not known; object none: no such hit
+  float travelled = 0;        // metres from the origin to that hit
+  float travelled_slack = 0;  // distance_slack() there
+
+  [[nodiscard]] bool goes_on() const { return !behind.object.is_none(); }
+  [[nodiscard]] bool is_same_way(const SpawnedRay& other) const {
+    return origin == other.origin && direction == other.direction && goes_on() == other.goes_on();
+  }
 };
 
 /// A node of a ray tree: a hit, or the environment when the ray left the scene.
@@ -37,7 +48,8 @@ struct RayNode {
   Hit hit;
   SpawnedRay ray;             // that led here
   std::uint8_t cut_mask = 0;  // branches that the Fresnel cut-off removed
-  float length = 0;           // metres from the ray's origin
+  float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
+  float length = 0;                                   // metres from the ray's origin
   float footprint = 0;        // ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
@@ -100,7 +112,7 @@ void complete(RayNode& node, const RayObject& object);
 
 /// The shadow segment from a point to a light: t runs to 1 at a point or spot light.
 struct ShadowSegment {
-  bool faces = false;  // the light is above the geometric surface
+  bool faces = false;  // the light is above the smooth surface
   Point origin{0, 0, 0};
   Direction direction{0, 0, 1};
   float t_max = 1;

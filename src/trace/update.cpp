@@ -63,18 +63,24 @@ class Updater {
   bool test(std::uint32_t index, const PathNode& node, bool touched) {
     TreeBlock& block = grower_.block();
     const SpawnedRay ray = block.nodes[index].ray;
-    Ray segment{ray.origin, ray.direction};
+    Ray segment = stored_segment(ray);
     float slack = 0;
     if (touched && !node.is_miss()) {
       slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object()));
       segment.t_max = block.nodes[index].length + slack;
     }
     if (!tests_.tests_ray(touched, segment)) return false;
-    const Meeting meeting = Tracer::intersect(change_.moved_after, segment);
+    Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
+    if (ray.goes_on()) {  // behind what it comes from?
+      segment.behind = grower_.whole_ray(ray).behind;
+      segment.t_min = 0;
+      meeting = Tracer::intersect(change_.moved_after, segment);
+      if (meeting.object.is_none()) return false;
+    }
     if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
       ++counters_.ray_updates;
-      const Meeting nearest = Tracer::intersect(*grower_.grow().level, {ray.origin, ray.direction});
+      const Meeting nearest = Tracer::intersect(*grower_.grow().level, grower_.whole_ray(ray));
       if (nearest.object == node.object() && nearest.hit == block.nodes[index].hit) return false;
       if (!nearest.object.is_none()) return regrow(index, node, nearest);
     }
@@ -344,8 +350,7 @@ class Updater {
         continue;
       }
       const SpawnedRay& ray = now.rays[b];
-      const bool same_ray = !respawns || ((before.mask >> b & 1U) != 0 && before.rays[b].origin == ray.origin &&
-                                          before.rays[b].direction == ray.direction);
+      const bool same_ray = !respawns || ((before.mask >> b & 1U) != 0 && before.rays[b].is_same_way(ray));
       std::uint32_t child = kNoNode;
       if (is_stored && same_ray) {
         child = update(ray, index, child_of(history, static_cast<Branch>(b)));
