@@ -43,7 +43,7 @@ Animation choose_animation(const Arguments& arguments, Console& console) {
 void require_one_camera(const Arguments& arguments, const Camera& before, const Camera& after) {
   const auto view = [](const Camera& camera) {
     return std::tuple(camera.node, camera.orthographic, camera.eye, camera.right, camera.up, camera.forward,
-                      camera.half_width, camera.half_height, camera.near);
+                      camera.half_width, camera.half_height, camera.near, camera.far);
   };
   if ((!before.node.empty() || !after.node.empty()) && view(before) != view(after))
     throw InputError(arguments.inputs[1], "",

@@ -360,7 +360,7 @@ TEST_F(CacheFolder, the_version_says_what_bits_depend_on) {
   const Arithmetic& own = own_arithmetic();
   EXPECT_EQ(relook({"--version"}).output, "relook 0.1.0\narithmetic " + std::to_string(own.version) + ", Embree " +
                                               own.embree + ", " + own.libc + ", " + own.instructions +
-                                              "\ncache format 3\n");
+                                              "\ncache format 4\n");
   EXPECT_NE(own.embree, "none");
 }
 

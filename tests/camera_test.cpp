@@ -15,7 +15,7 @@ LookDocument small_document() { return make_look_document(small_gltf()); }
 
 /// Image position of a world point, in pixels.
 std::pair<float, float> projected(const Camera& camera, const Point& point) {
-  const Direction d = point - camera.eye;
+  const Direction d(WidePoint(point) - camera.eye);
   const float depth = d.dot(camera.forward);
   return {(d.dot(camera.right) / depth / camera.half_width + 1) / 2 * static_cast<float>(camera.width),
           (1 - d.dot(camera.up) / depth / camera.half_height) / 2 * static_cast<float>(camera.height)};
@@ -25,7 +25,7 @@ TEST(Camera, is_found_by_its_own_name_by_its_node_and_without_a_name) {
   for (const char* choice : {"Lens", "Eye", ""}) {
     const Camera camera = choose_camera(small_document(), choice, 64, 32);
     EXPECT_EQ(camera.node, "Eye") << choice;
-    EXPECT_EQ(camera.eye, Point(0, 1, 6));
+    EXPECT_EQ(camera.eye, WidePoint(0, 1, 6));
     EXPECT_EQ(camera.forward, Direction(0, 0, -1));
     EXPECT_EQ(camera.right, Direction(1, 0, 0));
     EXPECT_FLOAT_EQ(camera.half_height, std::tan(0.4F));
@@ -50,7 +50,7 @@ TEST(Camera, a_scene_without_one_names_the_flag) {
 TEST(Camera, eye_target_and_angle) {
   const Camera camera = choose_camera(small_document(), "0,0,5:0,0,0:90", 100, 50);
   EXPECT_EQ(camera.node, "");
-  EXPECT_EQ(camera.eye, Point(0, 0, 5));
+  EXPECT_EQ(camera.eye, WidePoint(0, 0, 5));
   EXPECT_EQ(camera.forward, Direction(0, 0, -1));
   EXPECT_FLOAT_EQ(camera.half_height, 1);
   EXPECT_FLOAT_EQ(camera.half_width, 2);

@@ -150,7 +150,8 @@ TEST_P(Layers, place_every_hit_in_its_pixel) {
     const CameraRay ray =
         camera_ray(camera, static_cast<float>(i % kWidth) + 0.5F, static_cast<float>(i / kWidth) + 0.5F);
     const Point along = ray.origin + ray.direction * (depth / ray.direction.dot(camera.forward));
-    EXPECT_LT((along - triple("P")).length(), 1e-3F * depth) << i;
+    const Point in_world(WidePoint(along) + camera.eye);
+    EXPECT_LT((in_world - triple("P")).length(), 1e-3F * depth) << i;
     EXPECT_NEAR(normal.length(), 1, 1e-4F);
     EXPECT_EQ(file.channel("CryptoObject00.G")[i], 1.0F);
   }

@@ -23,7 +23,7 @@ int last_index(const Json& array) { return static_cast<int>(array.size()) - 1; }
 Camera camera_looking(Point eye, Point target, std::uint32_t width, std::uint32_t height) {
   Camera camera;
   camera.name = "test";
-  camera.eye = eye;
+  camera.eye = WidePoint(eye);
   camera.forward = (target - eye).normalized();
   const Direction up = std::fabs(camera.forward.y) > 0.99F ? Direction(0, 0, -1) : Direction(0, 1, 0);
   camera.right = camera.forward.cross(up).normalized();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 
 #include "base/error.h"
@@ -30,18 +31,27 @@ Imath::V3f read_vector(const JsonView& view) {
   return {values[0], values[1], values[2]};
 }
 
+WidePoint read_wide_point(const JsonView& view) {
+  WidePoint point(0, 0, 0);
+  const std::size_t count = view.size();
+  if (count != 3) view.fail("expected 3 numbers");
+  for (int axis = 0; axis < 3; ++axis) point[axis] = view.at(static_cast<std::size_t>(axis)).number(-1e300, 1e300);
+  return point;
+}
+
 Camera read_camera(const JsonView& view) {
   Camera camera;
   camera.name = view.at("name").text();
   camera.node = view.at("node").text();
   camera.orthographic = view.at("orthographic").boolean();
-  camera.eye = read_vector(view.at("eye"));
+  camera.eye = read_wide_point(view.at("eye"));
   camera.right = read_vector(view.at("right"));
   camera.up = read_vector(view.at("up"));
   camera.forward = read_vector(view.at("forward"));
   camera.half_width = view.at("half_width").real();
   camera.half_height = view.at("half_height").real();
   camera.near = view.at("near").real();
+  if (view.has("far")) camera.far = view.at("far").real();
   camera.width = static_cast<std::uint32_t>(view.at("width").integer(1, kLargestSide));
   camera.height = static_cast<std::uint32_t>(view.at("height").integer(1, kLargestSide));
   return camera;
@@ -161,10 +171,10 @@ void check_format(const Json& document) {
 }  // namespace
 
 Json camera_json(const Camera& camera) {
-  return {{"name", camera.name},
+  Json json{{"name", camera.name},
           {"node", camera.node},
           {"orthographic", camera.orthographic},
-          {"eye", vector_json(camera.eye)},
+          {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
           {"right", vector_json(camera.right)},
           {"up", vector_json(camera.up)},
           {"forward", vector_json(camera.forward)},
@@ -173,6 +183,8 @@ Json camera_json(const Camera& camera) {
           {"near", camera.near},
           {"width", camera.width},
           {"height", camera.height}};
+  if (std::isfinite(camera.far)) json["far"] = camera.far;
+  return json;
 }
 
 std::string manifest_text(const Manifest& manifest) {

@@ -21,7 +21,7 @@ bool same_view(const Camera& a, const Camera& b) {
   const bool same_size = a.width == b.width && a.height == b.height;
   const bool same_extent = a.half_width == b.half_width && a.half_height == b.half_height;
   return a.name == b.name && a.node == b.node && a.orthographic == b.orthographic && a.eye == b.eye &&
-         a.right == b.right && a.up == b.up && a.forward == b.forward && a.near == b.near &&
+         a.right == b.right && a.up == b.up && a.forward == b.forward && a.near == b.near && a.far == b.far &&
          (!same_size || same_extent);
 }
 

@@ -96,8 +96,9 @@ void LayerTile::set_first_hit(std::uint32_t pixel, std::uint32_t first_sample) {
   const Rgba normal = colors_[1][nearest_sample];
   const Uv uv = first_uv(*s_.rays.object(nearest->object).mesh, nearest->hit);
   put(kNormalColumn, pixel, {normal.r, normal.g, normal.b});
-  put(kPositionColumn, pixel, {position.x, position.y, position.z});
-  put(kDepthColumn, pixel, {(position - camera.eye).dot(camera.forward)});
+  const Point in_world(WidePoint(position) + camera.eye);
+  put(kPositionColumn, pixel, {in_world.x, in_world.y, in_world.z});
+  put(kDepthColumn, pixel, {position.dot(camera.forward)});
   put(kUvColumn, pixel, {uv.x, uv.y});
 }
 

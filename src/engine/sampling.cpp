@@ -39,7 +39,10 @@ PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view) : camera
 SpawnedRay PrimaryRays::through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const {
   const CameraRay ray =
       camera_ray(camera_, static_cast<float>(x) + in_pixel_[k].x, static_cast<float>(y) + in_pixel_[k].y);
-  return {ray.origin, ray.direction, ray.width, ray.spread};
+  SpawnedRay primary{ray.origin, ray.direction, ray.width, ray.spread};
+  primary.start = ray.start;
+  primary.end = ray.end;
+  return primary;
 }
 
 SpawnedRay PrimaryRays::ray(const TileRect& rect, std::uint32_t sample) const {

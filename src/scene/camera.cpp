@@ -2,6 +2,7 @@
 // values that are uniform over the image and rounded to float.
 #include "scene/camera.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
@@ -12,7 +13,7 @@
 namespace relook {
 namespace {
 
-using Wide = Imath::V3d;
+using Wide = WidePoint;
 
 Direction rounded_direction(const Wide& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -34,6 +35,13 @@ void set_field_of_view(Camera& camera, double vertical_radians) {
   camera.half_width = static_cast<float>(half * camera.width / camera.height);
 }
 
+/// The file's frame stays wholly visible in an image of another shape: the other side becomes wider.
+void show_whole(Camera& camera, double half_width, double half_height) {
+  const double aspect = static_cast<double>(camera.width) / camera.height;
+  camera.half_width = static_cast<float>(std::max(half_width, half_height * aspect));
+  camera.half_height = static_cast<float>(std::max(half_height, half_width / aspect));
+}
+
 Camera blank_camera(std::string_view name, std::uint32_t width, std::uint32_t height) {
   Camera camera;
   camera.name = name;
@@ -47,22 +55,22 @@ Camera framing_camera(const LookDocument& document, std::uint32_t width, std::ui
   constexpr double kVerticalDegrees = 35, kMargin = 1.04;
   Camera camera = blank_camera("auto", width, height);
   set_field_of_view(camera, kVerticalDegrees * std::numbers::pi / 180);
-  const Box bounds = world_bounds(document);
+  const WideBox bounds = world_bounds(document);
   if (bounds.isEmpty()) throw InputError(document.file, "", "the scene has no objects for --camera auto to frame");
   const Wide forward = Wide(-0.6, -0.42, -0.8).normalized();
   look_along(camera, forward, Wide(0, 1, 0));
-  const Wide right(camera.right), up(camera.up), center(bounds.center());
+  const Wide right(camera.right), up(camera.up), center = bounds.center();
   const auto half_width = static_cast<double>(camera.half_width), half_height = static_cast<double>(camera.half_height);
   double distance = 1e-3;
   for (unsigned corner = 0; corner < 8; ++corner) {
     const Wide at =
-        Wide(Point((corner & 1U) != 0 ? bounds.max.x : bounds.min.x, (corner & 2U) != 0 ? bounds.max.y : bounds.min.y,
-                   (corner & 4U) != 0 ? bounds.max.z : bounds.min.z)) -
+        Wide((corner & 1U) != 0 ? bounds.max.x : bounds.min.x, (corner & 2U) != 0 ? bounds.max.y : bounds.min.y,
+             (corner & 4U) != 0 ? bounds.max.z : bounds.min.z) -
         center;
     const double across = std::max(std::abs(at.dot(right)) / half_width, std::abs(at.dot(up)) / half_height);
     distance = std::max(distance, across * kMargin - at.dot(forward));
   }
-  camera.eye = Point(center - forward * distance);
+  camera.eye = center - forward * distance;
   return camera;
 }
 
@@ -95,7 +103,7 @@ Camera spelled_camera(std::string_view choice, std::uint32_t width, std::uint32_
   const Wide from(eye[0], eye[1], eye[2]), to(target[0], target[1], target[2]);
   if ((to - from).length() < 1e-9) throw UsageError(prefix + "EYE and TARGET are the same point");
   Camera camera = blank_camera(choice, width, height);
-  camera.eye = Point(from);
+  camera.eye = from;
   set_field_of_view(camera, angle[0] * std::numbers::pi / 180);
   look_along(camera, to - from, Wide(0, 1, 0));
   return camera;
@@ -117,21 +125,23 @@ Camera placed_camera(const LookDocument& document, std::string_view shown_name, 
   const std::string pointer = "/cameras/" + escape_token(name);
   Camera camera = blank_camera(shown_name, width, height);
   camera.node = node;
-  const WideTransform world = world_transforms(document).at(node);
-  if (!is_invertible(rounded(world)) || !is_in_range(world))
+  const WideTransform world = unscaled_transform(document, node);
+  camera.eye = Wide(world[3][0], world[3][1], world[3][2]);
+  if (!is_in_range(world) || !is_invertible(rounded(world, camera.eye)))
     throw InputError(document.file, "/nodes/" + escape_token(node), "the camera's node is scaled to nothing");
-  camera.eye = Point(Wide(world[3][0], world[3][1], world[3][2]));
   look_along(camera, -Wide(world[2][0], world[2][1], world[2][2]), Wide(world[1][0], world[1][1], world[1][2]));
   camera.orthographic = gltf.value("type", "") == "orthographic";
   const Json& lens = gltf.value(camera.orthographic ? "orthographic" : "perspective", Json::object());
-  if (camera.orthographic) {
-    const double half = number_at(lens, "ymag", 1e-9, 1e6, document, pointer);
-    camera.half_height = static_cast<float>(half);
-    camera.half_width = static_cast<float>(half * width / height);
-  } else {
-    set_field_of_view(camera, number_at(lens, "yfov", 1e-4, 3.14, document, pointer));
-  }
-  if (lens.contains("znear")) camera.near = static_cast<float>(number_at(lens, "znear", -1e-9, 1e9, document, pointer));
+  const auto number = [&](const char* key, double low, double high) {
+    return number_at(lens, key, low, high, document, pointer);
+  };
+  const double half_height = camera.orthographic ? number("ymag", 1e-9, 1e9) : std::tan(number("yfov", 1e-4, 3.1416) / 2);
+  double half_width = half_height * width / height;
+  if (camera.orthographic && lens.contains("xmag")) half_width = number("xmag", 1e-9, 1e9);
+  if (!camera.orthographic && lens.contains("aspectRatio")) half_width = half_height * number("aspectRatio", 1e-4, 1e4);
+  show_whole(camera, half_width, half_height);
+  if (lens.contains("znear")) camera.near = static_cast<float>(number("znear", -1e-9, 1e9));
+  if (lens.contains("zfar")) camera.far = static_cast<float>(number("zfar", 0, 3.4e38));
   return camera;
 }
 

@@ -217,7 +217,8 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
                                                        : index_.default_material;
       for (object.instance = 0; object.instance < instance_count; ++object.instance) {
         object.to_world =
-            rounded(instances == nullptr ? record.world : widened((*instances)[object.instance]) * record.world);
+            rounded(instances == nullptr ? record.world : widened((*instances)[object.instance]) * record.world,
+                    scene_.camera.eye);
         object.alive = record.visible && is_invertible(object.to_world);
         const ObjectId id = object_slot(name, object.primitive, object.instance);
         object.key = scene_.object(id).key;
@@ -295,8 +296,8 @@ void Compilation::update_light(const std::string& name, const Json& node, NodeRe
   const bool has_direction = length > 1e-12;
   if (light.kind != LightKind::point && has_direction) light.direction = unit_direction(-back, length);
   if (light.kind != LightKind::directional)
-    light.position = {static_cast<float>(record.world[3][0]) + 0.0F, static_cast<float>(record.world[3][1]) + 0.0F,
-                      static_cast<float>(record.world[3][2]) + 0.0F};
+    for (int axis = 0; axis < 3; ++axis)
+      light.position[axis] = static_cast<float>(record.world[3][axis] - scene_.camera.eye[axis]) + 0.0F;
   light.alive = record.visible && (has_direction || light.kind == LightKind::point);
   const auto [slot, is_new] =
       index_.lights.try_emplace(name, LightId(static_cast<std::uint32_t>(scene_.lights.size())));

@@ -83,7 +83,9 @@ bool is_invertible(const Transform& to_world) {
   return std::abs(determinant) > kLeastSkewness * product;
 }
 
-Transform rounded(const WideTransform& world) {
+Transform rounded(const WideTransform& in_world, const WidePoint& eye) {
+  WideTransform world = in_world;
+  for (int axis = 0; axis < 3; ++axis) world[3][axis] -= eye[axis];
   Transform result;
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)

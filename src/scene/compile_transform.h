@@ -21,7 +21,8 @@ using WideTransform = Imath::M44d;
 /// False for transforms that flatten a mesh to nothing (a scale of 0): it cannot be seen, and has no inverse.
 [[nodiscard]] bool is_invertible(const Transform& to_world);
 
-[[nodiscard]] Transform rounded(const WideTransform& world);
+/// Relative to `eye`.
+[[nodiscard]] Transform rounded(const WideTransform& world, const WidePoint& eye);
 [[nodiscard]] WideTransform widened(const Transform& local);
 
 }  // namespace relook

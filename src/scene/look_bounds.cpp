@@ -1,5 +1,6 @@
 #include "scene/look_bounds.h"
 
+#include <map>
 #include <set>
 
 #include "scene/look_schema.h"
@@ -17,7 +18,16 @@ const Json* member(const Json& value, std::string_view pointer) {
   return value.contains(at) ? &value[at] : nullptr;
 }
 
-std::map<std::string, Place> places_of(const LookDocument& document) {
+WideTransform own_transform(const Json& node, const LookDocument& document, const std::string& name, bool is_unscaled) {
+  const std::string pointer = "/nodes/" + escape_token(name);
+  if (!is_unscaled) return local_transform(node, document.file, pointer);
+  Json without = node;
+  without.erase("scale");
+  return local_transform(without, document.file, pointer);
+}
+
+/// `unscaled`: a node whose own scale is left out.
+std::map<std::string, Place> places_of(const LookDocument& document, std::string_view unscaled = {}) {
   const Json& nodes = document.look.at("nodes");
   std::set<std::string> children;
   for (const Json& node : nodes)
@@ -34,7 +44,7 @@ std::map<std::string, Place> places_of(const LookDocument& document) {
     todo.pop_back();
     Place& place = places[name];  // holds the parent's place until here
     const Json& node = nodes.at(name);
-    place.world = local_transform(node, document.file, "/nodes/" + escape_token(name)) * place.world;
+    place.world = own_transform(node, document, name, unscaled == name) * place.world;
     const Json* visible = member(node, "/extensions/KHR_node_visibility/visible");
     place.visible = place.visible && (visible == nullptr || *visible == true);
     for (const Json& child : node.at("children"))
@@ -44,26 +54,24 @@ std::map<std::string, Place> places_of(const LookDocument& document) {
   return places;
 }
 
-void add_corners(const Box& box, const WideTransform& world, Box& bounds) {
+void add_corners(const Box& box, const WideTransform& world, WideBox& bounds) {
   if (box.isEmpty()) return;
   for (unsigned corner = 0; corner < 8; ++corner) {
     const Imath::V3d local(static_cast<double>((corner & 1U) != 0 ? box.max.x : box.min.x),
                            static_cast<double>((corner & 2U) != 0 ? box.max.y : box.min.y),
                            static_cast<double>((corner & 4U) != 0 ? box.max.z : box.min.z));
-    bounds.extendBy(Point(local * world));
+    bounds.extendBy(local * world);
   }
 }
 
 }  // namespace
 
-std::map<std::string, WideTransform> world_transforms(const LookDocument& document) {
-  std::map<std::string, WideTransform> transforms;
-  for (const auto& [name, place] : places_of(document)) transforms.emplace(name, place.world);
-  return transforms;
+WideTransform unscaled_transform(const LookDocument& document, const std::string& node) {
+  return places_of(document, node).at(node).world;
 }
 
-Box world_bounds(const LookDocument& document) {
-  Box bounds;
+WideBox world_bounds(const LookDocument& document) {
+  WideBox bounds;
   for (const auto& [name, place] : places_of(document)) {
     const Json& node = document.look.at("nodes").at(name);
     if (!place.visible || !node.contains("mesh")) continue;

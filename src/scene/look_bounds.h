@@ -1,6 +1,5 @@
 // Where the nodes of a look document stand in the world, without compiling it: for cameras and automatic lights.
 #pragma once
-#include <map>
 #include <string>
 
 #include "scene/compile_transform.h"
@@ -8,10 +7,10 @@
 
 namespace relook {
 
-/// World matrix of every node that hangs on a root.
-[[nodiscard]] std::map<std::string, WideTransform> world_transforms(const LookDocument& document);
+/// World matrix of a node that hangs on a root, without the node's own scale: what a camera on it has.
+[[nodiscard]] WideTransform unscaled_transform(const LookDocument& document, const std::string& node);
 
 /// World bounds of everything visible; empty if there is nothing.
-[[nodiscard]] Box world_bounds(const LookDocument& document);
+[[nodiscard]] WideBox world_bounds(const LookDocument& document);
 
 }  // namespace relook

@@ -32,7 +32,7 @@ struct Object {
   bool alive = true;           // false: deleted or hidden
   MeshId mesh;                 // undisplaced geometry
   MaterialId material;
-  Transform to_world;          // affine, row vectors
+  Transform to_world;          // affine, row vectors; from the camera's eye
   std::optional<Displacement> displacement;
   bool operator==(const Object&) const = default;
 };
@@ -45,7 +45,7 @@ struct Light {
   std::string light;           // /lights/<name>
   bool alive = true;           // false: deleted or hidden
   LightKind kind = LightKind::point;
-  Point position{0, 0, 0};     // point, spot
+  Point position{0, 0, 0};     // point, spot: from the camera's eye
   Direction direction{0, 0, -1};  // spot, directional: unit, the way the light travels
   Color color{1, 1, 1};
   float intensity = 1;         // candela, or lux for directional

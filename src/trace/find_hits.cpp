@@ -34,9 +34,7 @@ void HitFinder::find_node(const SpawnedRay& before, const SpawnedRay& now) {
   }
   RayNode node(kNoNode, 0, before);
   node.object = stored.object();
-  Ray ray{before.origin, before.direction};
-  ray.behind = before.behind;  // found before
-  const Meeting meeting = rays_.meeting(node.object, ray);
+  const Meeting meeting = rays_.meeting(node.object, ray_of(before));  // what it goes on behind was found before
   node.hit = meeting.hit;
   node.t = meeting.t;
   complete(node, g_.scene.object(node.object));

@@ -42,8 +42,7 @@ class Grower {
 
   /// The ray as it is traced: behind the hit that it goes straight on from.
   [[nodiscard]] Ray whole_ray(const SpawnedRay& ray) const {
-    Ray whole{ray.origin, ray.direction};
-    whole.behind = ray.behind;
+    Ray whole = ray_of(ray);
     if (ray.goes_on() && std::isnan(ray.behind.t))
       whole.behind.t =
           Tracer::distance(g_.objects->of(ray.behind.object), {ray.origin, ray.direction}, ray.behind.hit.primitive);

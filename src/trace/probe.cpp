@@ -48,7 +48,7 @@ class Prober {
   [[nodiscard]] bool meets(const RayNode& node, bool touched) {
     Ray segment = stored_segment(node.ray);
     if (touched && !node.object.is_none())
-      segment.t_max = node.length + distance_slack(node, g_.scene.object(node.object));
+      segment.t_max = std::min(node.length + distance_slack(node, g_.scene.object(node.object)), node.ray.end);
     return tests_.tests_ray(touched, segment) && !Tracer::intersect(change_.moved_after, segment).object.is_none();
   }
 

@@ -9,8 +9,9 @@ namespace relook {
 
 /// A stored ray from where it was spawned on, as far as rounding tells; its end is to be set.
 [[nodiscard]] inline Ray stored_segment(const SpawnedRay& ray) {
-  Ray segment{ray.origin, ray.direction};
-  segment.t_min = std::max(ray.travelled - ray.travelled_slack, 0.0F);
+  Ray segment = ray_of(ray);
+  segment.behind = {};
+  segment.t_min = std::max(ray.travelled - ray.travelled_slack, ray.start);
   return segment;
 }
 

@@ -62,6 +62,8 @@ class Spawner {
     ray->origin = node_.ray.origin;
     ray->direction = node_.ray.direction;
     ray->cone_width = node_.ray.cone_width;
+    ray->start = node_.ray.start;
+    ray->end = node_.ray.end;
     ray->behind = {node_.object, node_.hit, node_.t, object_.key};
     ray->travelled = node_.length;
     ray->travelled_slack = distance_slack(node_, object_);

@@ -25,6 +25,8 @@ struct SpawnedRay {
   float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
   std::uint8_t generation = 1;    // 1: primary
   Branch branch = Branch::primary;
+  float start = 0;            // metres: nothing is met before
+  float end = std::numeric_limits<float>::infinity();  // nor after
   Meeting behind;             // the hit that it goes straight on from; t NaN: not known; object none: no such hit
   float travelled = 0;        // metres from the origin to that hit
   float travelled_slack = 0;  // distance_slack() there
@@ -34,6 +36,11 @@ struct SpawnedRay {
     return origin == other.origin && direction == other.direction && goes_on() == other.goes_on();
   }
 };
+
+/// The ray as it is traced.
+[[nodiscard]] inline Ray ray_of(const SpawnedRay& spawned) {
+  return {spawned.origin, spawned.direction, spawned.end, spawned.start, spawned.behind};
+}
 
 /// A node of a ray tree: a hit, or the environment when the ray left the scene.
 struct RayNode {

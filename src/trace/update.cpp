@@ -67,14 +67,14 @@ class Updater {
     float slack = 0;
     if (touched && !node.is_miss()) {
       slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object()));
-      segment.t_max = block.nodes[index].length + slack;
+      segment.t_max = std::min(block.nodes[index].length + slack, ray.end);
     }
     if (!tests_.tests_ray(touched, segment)) return false;
     Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
     if (ray.goes_on()) {  // behind what it comes from?
       segment.behind = grower_.whole_ray(ray).behind;
-      segment.t_min = 0;
+      segment.t_min = ray.start;
       meeting = Tracer::intersect(change_.moved_after, segment);
       if (meeting.object.is_none()) return false;
     }
