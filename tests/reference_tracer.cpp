@@ -305,7 +305,9 @@ Frame ReferenceTracer::frame() const {
   for (std::uint32_t y = 0; y < camera.height; ++y) {
     for (std::uint32_t x = 0; x < camera.width; ++x) {
       const CameraRay ray = camera_ray(camera, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-      const Answer answer = trace({Vec(ray.origin), Vec(ray.direction), ray.width, ray.spread, 1, 1});
+      const Vec start = Vec(ray.origin) + Vec(ray.direction) * double{ray.start};
+      const double width = double{ray.width} + double{ray.spread} * double{ray.start};
+      const Answer answer = trace({start, Vec(ray.direction), width, ray.spread, 1, 1});
       const Imath::V3f color = single(answer.color);
       frame.pixels.emplace_back(color.x, color.y, color.z, static_cast<float>(answer.alpha));
     }
