@@ -33,7 +33,7 @@ struct Ray {
   Direction direction;  // any length; t counts in its lengths
   float t_max = std::numeric_limits<float>::infinity();
   float t_min = 0;
-  Meeting behind;  // object not none: a hit of this ray; only what comes after it is met
+  Meeting behind{};  // object not none: a hit of this ray; only what comes after it is met
 };
 
 /// A surface that a shadow segment crosses.

@@ -27,7 +27,7 @@ struct SpawnedRay {
   Branch branch = Branch::primary;
   float start = 0;            // metres: nothing is met before
   float end = std::numeric_limits<float>::infinity();  // nor after
-  Meeting behind;             // the hit that it goes straight on from; t NaN: not known; object none: no such hit
+  Meeting behind{};           // the hit that it goes straight on from; t NaN: not known; object none: no such hit
   float travelled = 0;        // metres from the origin to that hit
   float travelled_slack = 0;  // distance_slack() there
 
