@@ -114,7 +114,7 @@ Vec ReferenceTracer::visibility(Vec p, Vec toward, double distance, double footp
   std::vector<Found> crossings;
   for (const WorldTriangle& triangle : triangles_) {
     const LineHit hit = intersect(triangle, p, toward);
-    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, hit, toward))
+    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, hit, -toward))
       crossings.push_back({&triangle, hit.t, hit.u, hit.v});
   }
   std::sort(crossings.begin(), crossings.end(), [](const Found& a, const Found& b) { return a.t < b.t; });

@@ -71,9 +71,9 @@ float largest_component(const Imath::V3f& v) {
 float slack_of(const Ray& ray) { return 0x1p-17F * largest_component(ray.origin) / largest_component(ray.direction); }
 float reach(float t, const Query& query) { return t + 1e-4F * t + query.slack; }
 
-/// Is there a surface for this ray?
-bool is_met(const RayObject& object, const Hit& hit, const Query& query) {
-  if (object.optics.culls_back && is_back_face(object, hit.primitive, query.ray->direction)) return false;
+/// Is there a surface for light, or sight, that travels this way?
+bool is_met(const RayObject& object, const Hit& hit, const Direction& travel) {
+  if (object.optics.culls_back && is_back_face(object, hit.primitive, travel)) return false;
   return !object.optics.cut_out || is_covered(object, hit);
 }
 
@@ -120,7 +120,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   candidate.key = placed.object->key;
   const bool accepted = candidate.nearer_than(query.nearest) && is_behind(*placed.object, candidate, query) &&
                         (!query.primitive || candidate.hit.primitive == *query.primitive) &&
-                        is_met(*placed.object, candidate.hit, query);
+                        is_met(*placed.object, candidate.hit, query.ray->direction);
   if (!accepted) {
     args->valid[0] = 0;
     return;
@@ -133,7 +133,7 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Tracer::Placed& placed = (*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)];
   const Hit hit{RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)};
-  if (placed.object == nullptr || !is_met(*placed.object, hit, query)) {
+  if (placed.object == nullptr || !is_met(*placed.object, hit, -query.ray->direction)) {
     args->valid[0] = 0;
     return;
   }

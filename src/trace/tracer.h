@@ -100,7 +100,8 @@ class Tracer {
   /// triangle's object alone. Infinity if it does not meet it.
   [[nodiscard]] static float distance(const TopLevel& level, const Ray& ray, std::uint32_t primitive);
 
-  /// False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent surfaces in
+  /// Segments run from a point to a light, against the light's own way: single-sided surfaces are met where they face
+  /// the light. False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent surfaces in
   /// order. `crossings` is cleared first.
   [[nodiscard]] static bool passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings);
 
