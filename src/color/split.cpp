@@ -151,8 +151,10 @@ class Splitter {
       case Op::procedural_weight:
         read.material |= mask_of(slot);
         break;
+      case Op::tangent_frame:  // turned as the map is
+        read.material |= kMappingMask | mask_of(slot);
+        break;
       case Op::coordinates:
-      case Op::tangent_frame:
         read.material |= kMappingMask;
         break;
       case Op::light_field:  // placement never changes while columns are kept

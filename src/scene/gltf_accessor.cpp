@@ -107,6 +107,27 @@ std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& acces
   return values;
 }
 
+std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor,
+                               std::span<const std::uint32_t> elements) {
+  if (elements.size() == accessor.count) return read_floats(model, accessor);
+  const std::size_t width = accessor.width;
+  std::vector<float> values(elements.size() * width, 0.0F);
+  if (accessor.view != kNoIndex) {
+    const unsigned char* from = view_data(model, accessor.view, accessor.offset);
+    const std::size_t stride = element_stride(model, accessor);
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      convert_elements(accessor, from + elements[i] * stride, stride, 1, values.data() + i * width);
+  }
+  const std::size_t bytes = component_bytes(accessor.component) * width;
+  for (std::size_t i = 0; i < accessor.sparse_count; ++i) {
+    const auto found = std::ranges::lower_bound(elements, sparse_index(model, accessor, i));
+    if (found == elements.end() || *found != sparse_index(model, accessor, i)) continue;
+    convert_elements(accessor, view_data(model, accessor.sparse_value_view, accessor.sparse_value_offset) + i * bytes,
+                     bytes, 1, values.data() + static_cast<std::size_t>(found - elements.begin()) * width);
+  }
+  return values;
+}
+
 std::vector<std::uint32_t> read_indices(const GltfModel& model, const GltfAccessor& accessor) {
   std::vector<std::uint32_t> values(accessor.count, 0);
   if (accessor.view != kNoIndex) {

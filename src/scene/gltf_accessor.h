@@ -12,6 +12,10 @@ namespace relook {
 /// values. Requires: no matrix.
 [[nodiscard]] std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor);
 
+/// The same of some elements, increasing and below count.
+[[nodiscard]] std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor,
+                                             std::span<const std::uint32_t> elements);
+
 /// A SCALAR accessor of an unsigned type.
 [[nodiscard]] std::vector<std::uint32_t> read_indices(const GltfModel& model, const GltfAccessor& accessor);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "base/error.h"
@@ -18,6 +19,8 @@ struct Source {
   const GltfPrimitive& primitive;
   std::string_view file;
   std::string pointer;  // "/meshes/0/primitives/1"
+  std::vector<std::string>& warnings;
+  std::vector<std::uint32_t> vertices;  // those that triangles name, increasing: the mesh has no others
 
   [[noreturn]] void fail(std::string_view semantic, std::string_view what) const {
     std::string where = pointer;
@@ -26,6 +29,10 @@ struct Source {
     else if (!semantic.empty())
       where += "/attributes/" + escape_token(semantic);
     throw InputError(file, where, what);
+  }
+  void warn(std::string_view semantic, std::string_view what) const {
+    warnings.push_back(pointer + (semantic == "indices" ? "/" : "/attributes/") + std::string(semantic) + ": " +
+                       std::string(what));
   }
   [[nodiscard]] const GltfAccessor* accessor(std::string_view semantic) const {
     const auto found = primitive.attributes.find(semantic);
@@ -51,17 +58,19 @@ void check_format(const Source& source, std::string_view semantic, const GltfAcc
   if (!fits) source.fail(semantic, "the accessor's type is not one that this attribute may have");
 }
 
-/// The attribute's numbers, all finite and at most `largest` in magnitude; empty without the attribute.
+/// The attribute's numbers at the vertices that are used, all finite and at most `largest` in magnitude; empty without
+/// the attribute.
 std::vector<float> attribute(const Source& source, std::string_view semantic, const Format& format, float largest) {
   const GltfAccessor* accessor = source.accessor(semantic);
   if (accessor == nullptr) return {};
   check_format(source, semantic, *accessor, format);
   if (const auto fault = data_fault(source.model, *accessor); !fault.empty()) source.fail(semantic, fault);
-  std::vector<float> values = read_floats(source.model, *accessor);
+  std::vector<float> values = read_floats(source.model, *accessor, source.vertices);
   const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
   if (bad != values.end())
     source.fail(semantic, "element " +
-                              std::to_string(static_cast<std::size_t>(bad - values.begin()) / accessor->width) +
+                              std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) /
+                                                             accessor->width]) +
                               (std::isfinite(*bad) ? " is too large" : " is not finite"));
   return values;
 }
@@ -77,6 +86,9 @@ Normal normalized(float x, float y, float z) {
   return {static_cast<float>(dx / length), static_cast<float>(dy / length), static_cast<float>(dz / length)};
 }
 
+constexpr std::uint32_t kRestart = 0xFFFFFFFFU;
+
+/// The vertices that triangles are made of; kRestart where a strip or fan begins anew.
 std::vector<std::uint32_t> vertex_sequence(const Source& source, std::size_t vertices) {
   std::vector<std::uint32_t> sequence;
   if (source.primitive.indices == kNoIndex) {
@@ -91,27 +103,32 @@ std::vector<std::uint32_t> vertex_sequence(const Source& source, std::size_t ver
     source.fail("indices", "indices must be unsigned integers, one at a time");
   if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail("indices", fault);
   sequence = read_indices(source.model, accessor);
-  const std::uint32_t restart = type == Component::u8 ? 0xFFU : type == Component::u16 ? 0xFFFFU : 0xFFFFFFFFU;
+  const std::uint32_t restart = type == Component::u8 ? 0xFFU : type == Component::u16 ? 0xFFFFU : kRestart;
+  bool restarts = false;
   for (std::size_t i = 0; i < sequence.size(); ++i) {
-    if (sequence[i] == restart)
-      source.fail("indices",
-                  "index " + std::to_string(i) + " is the primitive restart value " + std::to_string(restart));
+    if (sequence[i] == restart) {
+      sequence[i] = kRestart;
+      restarts = true;
+      continue;
+    }
     if (sequence[i] >= vertices)
       source.fail("indices", "index " + std::to_string(i) + " is " + std::to_string(sequence[i]) + ", but there are " +
                                  std::to_string(vertices) + " vertices");
   }
+  if (restarts) source.warn("indices", "primitive restart values, which glTF does not have, begin new strips");
   return sequence;
 }
 
-/// Triangles of modes 4 (list), 5 (strip) and 6 (fan). Those that name a vertex twice have no area: they are left out.
-std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::uint32_t>& sequence, int mode) {
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+/// Triangles of modes 4 (list), 5 (strip) and 6 (fan), without a restart among them. Those that name a vertex twice
+/// have no area: they are left out.
+void add_triangles(std::span<const std::uint32_t> sequence, int mode, Triangles& triangles) {
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
     const std::array<std::uint32_t, 3> corners = {sequence[a], sequence[b], sequence[c]};
     if (corners[0] != corners[1] && corners[1] != corners[2] && corners[0] != corners[2]) triangles.push_back(corners);
   };
   const std::size_t step = mode == 4 ? 3 : 1;
-  triangles.reserve(sequence.size() / step);
   for (std::size_t i = 0; i + 3 <= sequence.size(); i += step) {
     if (mode == 6)
       add(i + 1, i + 2, 0);
@@ -120,7 +137,50 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const std::vector<std::ui
     else
       add(i, i + 1, i + 2);
   }
+}
+
+Triangles triangles_of(std::span<const std::uint32_t> sequence, int mode) {
+  Triangles triangles;
+  triangles.reserve(sequence.size() / (mode == 4 ? 3 : 1));
+  while (!sequence.empty()) {
+    const auto end = std::ranges::find(sequence, kRestart);
+    const auto length = static_cast<std::size_t>(end - sequence.begin());
+    add_triangles(sequence.first(length), mode, triangles);
+    sequence = sequence.subspan(std::min(length + 1, sequence.size()));
+  }
   return triangles;
+}
+
+/// The vertices that triangles name, increasing; the triangles then name places among them.
+std::vector<std::uint32_t> gather_vertices(Triangles& triangles) {
+  std::vector<std::uint32_t> vertices;
+  vertices.reserve(3 * triangles.size());
+  std::uint32_t last = 0;
+  for (const auto& corners : triangles)
+    for (const std::uint32_t corner : corners) {
+      vertices.push_back(corner);
+      last = std::max(last, corner);
+    }
+  if (last < 4 * vertices.size()) {  // as a rule most are named: no need to sort
+    std::vector<std::uint32_t> place(std::size_t{last} + 1, kRestart);
+    for (const std::uint32_t vertex : vertices) place[vertex] = 0;
+    vertices.clear();
+    for (std::uint32_t vertex = 0; vertex < place.size(); ++vertex)
+      if (place[vertex] == 0) {
+        place[vertex] = static_cast<std::uint32_t>(vertices.size());
+        vertices.push_back(vertex);
+      }
+    if (vertices.size() < place.size())
+      for (auto& corners : triangles)
+        for (std::uint32_t& corner : corners) corner = place[corner];
+    return vertices;
+  }
+  std::ranges::sort(vertices);
+  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
+  for (auto& corners : triangles)
+    for (std::uint32_t& corner : corners)
+      corner = static_cast<std::uint32_t>(std::ranges::lower_bound(vertices, corner) - vertices.begin());
+  return vertices;
 }
 
 /// Vertices whose stored normal has no direction get the mean of their triangles' normals.
@@ -148,8 +208,9 @@ void decode_normals(const Source& source, Mesh& mesh) {
   replace_missing_normals(mesh);
 }
 
-/// Tangents without a direction make the whole column useless: the renderer then derives tangents from uv.
+/// Tangents without a direction, a side or normals make the whole column useless: it is derived from uv then.
 void decode_tangents(const Source& source, Mesh& mesh) {
+  if (mesh.normals.empty()) return;  // glTF 3.7.2.1
   const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kLargestCoordinate);
   mesh.tangents.reserve(values.size() / 4);
   for (std::size_t i = 0; i < values.size(); i += 4) {
@@ -159,8 +220,12 @@ void decode_tangents(const Source& source, Mesh& mesh) {
       return;
     }
     const float handedness = values[i + 3];
-    if (handedness != 1 && handedness != -1)
-      source.fail("TANGENT", "element " + std::to_string(i / 4) + " has a w that is neither 1 nor -1");
+    if (handedness != 1 && handedness != -1) {
+      source.warn("TANGENT", "element " + std::to_string(source.vertices[i / 4]) +
+                                 " has a w that is neither 1 nor -1; tangents follow from the texture coordinates");
+      mesh.tangents.clear();
+      return;
+    }
     mesh.tangents.emplace_back(direction.x, direction.y, direction.z, handedness);
   }
 }
@@ -178,15 +243,17 @@ void decode_colors(const Source& source, Mesh& mesh) {
   }
 }
 
-Mesh decode_primitive(const Source& source) {
+Mesh decode_primitive(Source source) {
   Mesh mesh;
+  const std::size_t count = source.accessor("POSITION")->count;
+  mesh.triangles = triangles_of(vertex_sequence(source, count), source.primitive.mode);
+  source.vertices = gather_vertices(mesh.triangles);
   const auto positions = attribute(source, "POSITION", {3, 3, true, false}, kLargestCoordinate);
   mesh.positions.reserve(positions.size() / 3);
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
     mesh.bounds.extendBy(mesh.positions.back());
   }
-  mesh.triangles = triangles_of(vertex_sequence(source, mesh.positions.size()), source.primitive.mode);
   decode_normals(source, mesh);
   decode_tangents(source, mesh);
   for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
@@ -214,15 +281,16 @@ DecodedBytes decoded_bytes(const GltfModel& model, const GltfPrimitive& primitiv
                                                                                 {"TEXCOORD_0", sizeof(Uv)},
                                                                                 {"TEXCOORD_1", sizeof(Uv)},
                                                                                 {"COLOR_0", sizeof(Rgba)}}};
-  const std::uint64_t vertices = model.accessors[primitive.attributes.at("POSITION")].count;
+  const std::uint64_t all = model.accessors[primitive.attributes.at("POSITION")].count;
   const std::uint64_t corners =
-      primitive.indices == kNoIndex ? vertices : std::uint64_t{model.accessors[primitive.indices].count};
+      primitive.indices == kNoIndex ? all : std::uint64_t{model.accessors[primitive.indices].count};
   const std::uint64_t triangles = primitive.mode == 4 ? corners / 3 : corners;
+  const std::uint64_t vertices = std::min(all, 3 * triangles);
   DecodedBytes bytes{bounded_product(triangles, sizeof(std::array<std::uint32_t, 3>)), 0};
   for (const auto& [semantic, size] : kColumns)
     if (primitive.attributes.contains(semantic)) bytes.kept = bounded_sum(bytes.kept, bounded_product(vertices, size));
   bytes.passing =
-      bounded_sum(bounded_product(corners, sizeof(std::uint32_t)), bounded_product(vertices, sizeof(Imath::V3d)));
+      bounded_sum(bounded_product(9 * corners, sizeof(std::uint32_t)), bounded_product(vertices, sizeof(Imath::V3d)));
   return bytes;
 }
 
@@ -276,7 +344,7 @@ std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string
         (primitive.mode < 4 ? not_triangles : without_positions).add(pointer);
         continue;
       }
-      Mesh mesh = decode_primitive({model, primitive, file, pointer});
+      Mesh mesh = decode_primitive({model, primitive, file, pointer, warnings, {}});
       mesh.primitive = static_cast<std::uint32_t>(p);
       if (mesh.triangles.empty())
         empty.add(pointer);

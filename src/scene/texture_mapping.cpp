@@ -38,10 +38,14 @@ Point vertex_coordinates(const Mesh& mesh, const TextureSlot& slot, Mapping mapp
   return projected_coordinates(mesh, mesh.positions[vertex], mapping, slot.axis);
 }
 
-Uv transformed_uv(const TextureSlot& slot, const Point& coordinates) {
+Rotation rotation_of(const TextureSlot& slot) {
   constexpr float kTurnsPerRadian = 0.15915494F;
   const float turns = slot.rotation * kTurnsPerRadian;
-  const float c = portable_sin_turns(turns + 0.25F), s = portable_sin_turns(turns);
+  return {portable_sin_turns(turns), portable_sin_turns(turns + 0.25F)};
+}
+
+Uv transformed_uv(const TextureSlot& slot, const Point& coordinates) {
+  const auto [s, c] = rotation_of(slot);
   const float x = coordinates.x * slot.scale.x, y = coordinates.y * slot.scale.y;
   return Uv(c * x + s * y + slot.offset.x, -s * x + c * y + slot.offset.y);
 }

@@ -16,6 +16,12 @@ namespace relook {
 [[nodiscard]] Point vertex_coordinates(const Mesh& mesh, const TextureSlot& slot, Mapping mapping,
                                        std::uint32_t vertex);
 
+/// Sine and cosine of the slot's rotation.
+struct Rotation {
+  float sine = 0, cosine = 1;
+};
+[[nodiscard]] Rotation rotation_of(const TextureSlot& slot);
+
 /// KHR_texture_transform: scale, then rotate counter-clockwise, then move.
 [[nodiscard]] Uv transformed_uv(const TextureSlot& slot, const Point& coordinates);
 

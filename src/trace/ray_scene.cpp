@@ -87,9 +87,7 @@ void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   }
   for (const auto& change : delta.materials)
     for (const ObjectId user : users_[change.id.index()]) {
-      RayObject& object = *objects_[user.index()];
-      object.material = materials_[change.id.index()];
-      object.optics = surface_optics(*object.material, *object.mesh);
+      set_material(*objects_[user.index()], materials_[change.id.index()]);
     }
 }
 
@@ -106,9 +104,9 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
   RayObject ray_object;
   ray_object.mesh = mesh_of(scene, object);
   const std::size_t m = object.material.index();
-  ray_object.material = m < materials_.size() && materials_[m] && *materials_[m] == material
-                            ? materials_[m]
-                            : std::make_shared<const Material>(material);
+  set_material(ray_object, m < materials_.size() && materials_[m] && *materials_[m] == material
+                               ? materials_[m]
+                               : std::make_shared<const Material>(material));
   ray_object.to_world = object.to_world;
   ray_object.normal_to_world = normal_matrix(object.to_world);
   const float det = determinant(object.to_world, ray_object.normal_to_world);
@@ -117,8 +115,33 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
   ray_object.condition = condition_number(object.to_world, ray_object.normal_to_world, det);
   ray_object.alive = object.alive;
   ray_object.key = tie_key(object, ray_object.mesh->bounds);
-  ray_object.optics = surface_optics(material, *ray_object.mesh);
   return ray_object;
+}
+
+void RayScene::set_material(RayObject& object, std::shared_ptr<const Material> material) const {
+  object.material = std::move(material);
+  object.optics = surface_optics(*object.material, *object.mesh);
+  const Mesh& mesh = *object.mesh;
+  for (std::uint8_t set = 0; set < object.tangents.size(); ++set) {
+    const auto needs = [&](Slot which) {
+      const TextureSlot& slot = object.material->slot(which);
+      return slot.kind != TextureKind::none && slot.mapping == Mapping::uv && slot.texcoord == set;
+    };
+    const bool has_all = !mesh.normals.empty() && mesh.tangents.empty() && !mesh.uv[set].empty();
+    object.tangents[set] =
+        has_all && (needs(Slot::normal) || needs(Slot::clearcoat_normal)) ? tangents_of(object.mesh, set) : nullptr;
+  }
+}
+
+std::shared_ptr<const CornerTangents> RayScene::tangents_of(const std::shared_ptr<const Mesh>& mesh,
+                                                            std::uint8_t texcoord) const {
+  std::erase_if(derived_, [](const Derived& known) { return known.result.expired() || known.mesh.expired(); });
+  for (const Derived& known : derived_)
+    if (known.texcoord == texcoord && known.mesh.lock().get() == mesh.get())
+      if (auto result = known.result.lock()) return result;
+  auto result = std::make_shared<const CornerTangents>(derive_tangents(*mesh, texcoord));
+  derived_.push_back({mesh, texcoord, result});
+  return result;
 }
 
 std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object) const {

@@ -1,17 +1,20 @@
 // The scene frozen for rays: per object what intersection, surface points and spawning need, derived from Scene. A
 // change of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
 #pragma once
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "scene/scene.h"
 #include "scene/surface_optics.h"
+#include "scene/tangents.h"
 
 namespace relook {
 
 /// One object, ready for rays.
 struct RayObject {
   std::shared_ptr<const Mesh> mesh;          // displaced, if the object is
+  std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: where a normal map needs derived ones
   std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
   Transform to_world;
   Imath::M33f normal_to_world;  // inverse transpose of the linear part, not normalised
@@ -44,6 +47,9 @@ class RayScene {
  private:
   void list_user(ObjectId object, MaterialId material);
   [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object) const;
+  void set_material(RayObject& object, std::shared_ptr<const Material> material) const;
+  [[nodiscard]] std::shared_ptr<const CornerTangents> tangents_of(const std::shared_ptr<const Mesh>& mesh,
+                                                                  std::uint8_t texcoord) const;
 
   const Scene* scene_ = nullptr;
   struct Displaced {
@@ -52,6 +58,13 @@ class RayScene {
     std::weak_ptr<const Mesh> result;
   };
 
+  struct Derived {
+    std::weak_ptr<const Mesh> mesh;
+    std::uint8_t texcoord;
+    std::weak_ptr<const CornerTangents> result;
+  };
+
+  mutable std::vector<Derived> derived_;  // as displaced_
   mutable std::vector<Displaced> displaced_;                // made once, while an object uses them
   std::vector<std::unique_ptr<RayObject>> objects_;         // by ObjectId; none moves or goes: top levels point to them
   std::vector<std::vector<ObjectId>> users_;                // by MaterialId

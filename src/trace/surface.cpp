@@ -144,14 +144,33 @@ Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float 
   return sample(*slot.pyramid, transformed_uv(slot, at.position), level, slot.wrap_s, slot.wrap_t, slot.nearest);
 }
 
+namespace {
+
+/// The frame of the map as KHR_texture_transform lays it: +X along its own u, +Y against its own v.
+TangentFrame turned(const TangentFrame& frame, const Normal& front, const TextureSlot& slot) {
+  if (slot.rotation == 0 && slot.scale.x > 0 && slot.scale.y > 0) return frame;
+  const auto [sine, cosine] = rotation_of(slot);
+  // d(u, v) of the mesh for a step along the map's u, from the inverse of the transform, times |scale x scale|.
+  const float along_u = cosine * slot.scale.y, along_v = sine * slot.scale.x;
+  const float sign = slot.scale.x * slot.scale.y < 0 ? -1.0F : 1.0F;
+  const Direction tangent =
+      unit_or((frame.tangent * along_u - frame.bitangent * along_v) * sign, Direction(0, 0, 0));
+  const float handedness = front.cross(frame.tangent).dot(frame.bitangent) < 0 ? -sign : sign;
+  return {tangent, front.cross(tangent) * handedness};
+}
+
+}  // namespace
+
 TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const SurfacePoint& point,
                            const TextureSlot& slot) {
   const Mesh& mesh = *object.mesh;
   const auto& triangle = mesh.triangles[hit.primitive];
   Direction tangent;
   float handedness = 1;
-  if (!mesh.tangents.empty() && slot.mapping == Mapping::uv && slot.texcoord == 0) {
-    const Imath::V4f t = interpolate(mesh.tangents, triangle, hit);
+  const CornerTangents* derived = slot.mapping == Mapping::uv ? object.tangents[slot.texcoord].get() : nullptr;
+  if (derived != nullptr || (!mesh.tangents.empty() && slot.mapping == Mapping::uv)) {
+    const Imath::V4f t = derived != nullptr ? interpolate(derived->tangents, derived->corners[hit.primitive], hit)
+                                            : interpolate(mesh.tangents, triangle, hit);
     tangent = vector_to_world(object.to_world, Direction(t.x, t.y, t.z));
     handedness = t.w < 0 ? -1.0F : 1.0F;
   } else {
@@ -171,7 +190,7 @@ TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const Surfac
   if (!(tangent.dot(tangent) > 0)) return {};
   tangent = scaled(tangent);
   tangent = unit_or(tangent - front * front.dot(tangent), Direction(0, 0, 0));
-  return {tangent, front.cross(tangent) * handedness};
+  return turned({tangent, front.cross(tangent) * handedness}, front, slot);
 }
 
 Normal mapped_normal(const TangentFrame& frame, const SurfacePoint& point, Rgba texel, float scale) {
