@@ -16,8 +16,8 @@ bool is_preview_name(const std::filesystem::path& output) {
   return suffix == ".png";
 }
 
-std::vector<Output> outputs_of(const Arguments& arguments) {
-  std::vector<Output> outputs;
+std::vector<NamedOutput> outputs_of(const Arguments& arguments) {
+  std::vector<NamedOutput> outputs;
   const auto add = [&](const std::filesystem::path& path, std::string_view option, std::optional<OwnKind> kind) {
     if (!path.empty()) outputs.push_back({path, option, kind});
   };
@@ -51,8 +51,8 @@ std::vector<Output> outputs_of(const Arguments& arguments) {
   return outputs;
 }
 
-std::vector<Input> inputs_of(const Arguments& arguments) {
-  std::vector<Input> inputs;
+std::vector<NamedInput> inputs_of(const Arguments& arguments) {
+  std::vector<NamedInput> inputs;
   const auto add = [&](const std::string& path, std::string_view what) {
     if (!path.empty() && path != "-") inputs.push_back({path, what});
   };

@@ -11,20 +11,20 @@
 
 namespace relook {
 
-struct Output {
+struct NamedOutput {
   std::filesystem::path path;
   std::string_view option;
   std::optional<OwnKind> kind;  // none: a folder
 };
-struct Input {
+struct NamedInput {
   std::filesystem::path path;
   std::string_view what;
 };
 
 /// Throws UsageError when `render` is to write neither a frame nor a preview.
-[[nodiscard]] std::vector<Output> outputs_of(const Arguments& arguments);
+[[nodiscard]] std::vector<NamedOutput> outputs_of(const Arguments& arguments);
 /// Without standard input.
-[[nodiscard]] std::vector<Input> inputs_of(const Arguments& arguments);
+[[nodiscard]] std::vector<NamedInput> inputs_of(const Arguments& arguments);
 
 /// Whether `render` is to write a preview (.png), not a frame (.exr). Throws UsageError for any other suffix.
 [[nodiscard]] bool is_preview_name(const std::filesystem::path& output);

@@ -63,18 +63,18 @@ bool is_linked_in(const std::filesystem::path& file, const std::filesystem::path
 }
 
 /// Whether an output is a file in a folder of inputs, and no earlier output there.
-bool is_read_from(const Output& output, const std::filesystem::path& folder) {
+bool is_read_from(const NamedOutput& output, const std::filesystem::path& folder) {
   std::error_code error;
   if (!output.kind || !std::filesystem::is_directory(folder, error)) return false;
   return std::filesystem::exists(output.path, error) && !is_own_file(output.path, *output.kind) &&
          (lies_in(output.path, folder) || is_linked_in(output.path, folder));
 }
 
-[[noreturn]] void refuse(const Output& output, const std::string& why) {
+[[noreturn]] void refuse(const NamedOutput& output, const std::string& why) {
   throw UsageError(output.path.string(), std::string(output.option) + ": " + why);
 }
 
-void check_file(const Output& output, bool overwrites) {
+void check_file(const NamedOutput& output, bool overwrites) {
   std::error_code error;
   const auto status = std::filesystem::status(output.path, error);
   const auto name = std::filesystem::symlink_status(output.path, error);
@@ -98,10 +98,10 @@ bool is_reserved(const std::filesystem::path& path, const std::filesystem::path&
   return std::ranges::find(kNames, first) != kNames.end();
 }
 
-void check_together(const std::vector<Output>& outputs, Verb verb) {
+void check_together(const std::vector<NamedOutput>& outputs, Verb verb) {
   for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t k = 0; k < outputs.size(); ++k) {
-      const Output &one = outputs[i], &other = outputs[k];
+      const NamedOutput &one = outputs[i], &other = outputs[k];
       if (k < i && are_one(one.path, other.path))
         refuse(one, "is the output of " + std::string(other.option) + ", too");
       if (i == k || other.kind || !lies_in(one.path, other.path)) continue;
@@ -113,9 +113,10 @@ void check_together(const std::vector<Output>& outputs, Verb verb) {
 }  // namespace
 
 void check_outputs(const Arguments& arguments) {
-  const std::vector<Output> outputs = outputs_of(arguments);
-  for (const Input& input : inputs_of(arguments)) require_not_outputs(arguments, std::span(&input.path, 1), input.what);
-  for (const Output& output : outputs) {
+  const std::vector<NamedOutput> outputs = outputs_of(arguments);
+  for (const NamedInput& input : inputs_of(arguments))
+    require_not_outputs(arguments, std::span(&input.path, 1), input.what);
+  for (const NamedOutput& output : outputs) {
     const std::optional<std::filesystem::path> cache = enclosing_cache(resolved(output.path));
     const bool is_cache_itself =
         cache && arguments.verb == Verb::preprocess && !output.kind && are_one(*cache, output.path);
@@ -127,7 +128,7 @@ void check_outputs(const Arguments& arguments) {
 
 void require_not_outputs(const Arguments& arguments, std::span<const std::filesystem::path> inputs,
                          std::string_view what) {
-  for (const Output& output : outputs_of(arguments))
+  for (const NamedOutput& output : outputs_of(arguments))
     for (const std::filesystem::path& input : inputs)
       if (are_one(output.path, input) || is_read_from(output, input))
         refuse(output, "is " + std::string(what) + ": an input is never replaced");

@@ -167,13 +167,13 @@ void add_system(Reach& reach) {
 Reach reach_of(const Arguments& arguments) {
   Reach reach;
   add_system(reach);
-  for (const Input& input : inputs_of(arguments)) add_input(input.path, reach.readable);
+  for (const NamedInput& input : inputs_of(arguments)) add_input(input.path, reach.readable);
   if (const char* config = std::getenv("OCIO")) add_display_views(config, reach.readable);
   const bool has_standard_input = std::ranges::find(arguments.inputs, kStandardInput) != arguments.inputs.end() ||
                                   arguments.journal == kStandardInput || arguments.view.look_patch == kStandardInput;
   if (has_standard_input) reach.readable.emplace_back(".");
   if (arguments.verb == Verb::blame) reach.readable.emplace_back("/");
-  for (const Output& output : outputs_of(arguments)) {
+  for (const NamedOutput& output : outputs_of(arguments)) {
     const bool is_folder = !output.kind && arguments.verb != Verb::preprocess;
     if (is_folder)
       add_output_folder(output.path, reach);
