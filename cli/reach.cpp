@@ -172,7 +172,8 @@ Reach reach_of(const Arguments& arguments) {
   const bool has_standard_input = std::ranges::find(arguments.inputs, kStandardInput) != arguments.inputs.end() ||
                                   arguments.journal == kStandardInput || arguments.view.look_patch == kStandardInput;
   if (has_standard_input) reach.readable.emplace_back(".");
-  if (arguments.verb == Verb::blame) reach.readable.emplace_back("/");
+  const bool is_told_by_run = arguments.verb == Verb::blame && (arguments.cache.empty() || arguments.journal.empty());
+  if (is_told_by_run) reach.readable.emplace_back("/");
   for (const NamedOutput& output : outputs_of(arguments)) {
     const bool is_folder = !output.kind && arguments.verb != Verb::preprocess;
     if (is_folder)

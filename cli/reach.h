@@ -7,9 +7,9 @@
 namespace relook {
 
 /// Readable: each input and the folder it lies in (files that it names are there, and so is what another program puts
-/// in its place), what links in an input folder lead to, libraries, and what they read of the system; of `blame`, whose
-/// run says where its cache and journal are, everything. Writable: folder outputs that are there, the folders of all
-/// other outputs, or the nearest ones above them that are there.
+/// in its place), what links in an input folder lead to, libraries, and what they read of the system; of a `blame`
+/// whose run says where its cache or journal is, everything. Writable: folder outputs that are there, the folders of
+/// all other outputs, or the nearest ones above them that are there.
 [[nodiscard]] Reach reach_of(const Arguments& arguments);
 
 }  // namespace relook

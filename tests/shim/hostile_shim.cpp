@@ -1,6 +1,6 @@
 // Preloaded into relook by tests: stands for a fault in what reads an input. When a file whose name ends in
-// $RELOOK_HOSTILE_AT is opened for the first time, a new thread tries all hostile calls, and those on files in
-// $RELOOK_HOSTILE_FOLDER; what came of them goes to stderr, a line "hostile: NAME: ERRNO" each.
+// $RELOOK_HOSTILE_AT is opened to be read for the first time, a new thread tries all hostile calls, and those on files
+// in $RELOOK_HOSTILE_FOLDER; what came of them goes to stderr, a line "hostile: NAME: ERRNO" each.
 #include <dlfcn.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -15,9 +15,10 @@
 
 namespace {
 
-void attack_at(const char* path) {
+void attack_at(const char* path, int flags) {
   static std::atomic<bool> is_done{false};
   const char *const name = getenv("RELOOK_HOSTILE_AT"), *const folder = getenv("RELOOK_HOSTILE_FOLDER");
+  if ((flags & O_PATH) != 0) return;  // only looked up
   if (name == nullptr || folder == nullptr || !std::string_view(path).ends_with(name) || is_done.exchange(true)) return;
   std::thread([folder] {
     for (const auto& calls : {relook::hostile_calls(), relook::hostile_file_calls(folder)})
@@ -26,7 +27,7 @@ void attack_at(const char* path) {
 }
 
 int open_by(const char* name, const char* path, int flags, mode_t mode) {
-  attack_at(path);
+  attack_at(path, flags);
   return reinterpret_cast<int (*)(const char*, int, ...)>(dlsym(RTLD_NEXT, name))(path, flags, mode);
 }
 
