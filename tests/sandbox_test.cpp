@@ -152,12 +152,12 @@ class SandboxedProgram : public Sandbox {
     before.emplace_back("--quiet");
     return run_program(before);
   }
-  /// Of a command line as a shell in `folder` reads it; $R is the program.
-  ProgramResult shell(const std::string& folder, const std::string& line) const {
-    return run_program({"env", std::string("R=") + RELOOK_PROGRAM, "bash", "-c", "cd '" + folder + "' && " + line});
+  /// Of a command line as a shell in the test's folder reads it; $R is the program, $S makes it quick.
+  ProgramResult shell(const std::string& line) const {
+    return run_program({"env", std::string("R=") + RELOOK_PROGRAM, "S=--resolution 16x9 --quiet", "bash", "-c",
+                        "cd '" + at("") + "' && " + line});
   }
   void expect_done(const ProgramResult& result) const { EXPECT_EQ(result.exit_code, 0) << result.output; }
-  /// relook preprocess and replay, from the scene and journal of the test.
   void make_cache() const {
     expect_done(relook({"preprocess", at("scene/spheres.gltf"), "-o", at("c"), "--resolution", "40x24"}));
   }
@@ -165,9 +165,7 @@ class SandboxedProgram : public Sandbox {
 
 TEST_F(SandboxedProgram, refuses_what_a_fault_in_it_would_be_used_for) {
   const std::vector<std::string> shim{"env", std::string("LD_PRELOAD=") + RELOOK_HOSTILE_SHIM,
-                                      "RELOOK_HOSTILE_AT=spheres.gltf",
-                                      // What the test writes lies beside the scene, and is within reach.
-                                      "RELOOK_HOSTILE_FOLDER=" + at("outside")};
+                                      "RELOOK_HOSTILE_AT=spheres.gltf", "RELOOK_HOSTILE_FOLDER=" + at("outside")};
   const auto hostile = [&](std::vector<std::string> before) {
     fs::create_directories(at("out"));
     const ProgramResult result =
@@ -194,38 +192,42 @@ TEST_F(SandboxedProgram, reads_and_writes_whatever_way_files_are_named) {
   fs::create_symlink(at("j.json"), at("plain.json"));
   fs::create_directories(at("disk"));
   fs::create_directory_symlink(at("disk"), at("links/disk"));
-  const std::string size = " --resolution 16x9 --quiet";
-  for (const std::string& line : {
-           "$R render scene/spheres.gltf -o f.exr" + size,
-           "$R render scene/linked.gltf -o links/disk/a/b/c/f.exr" + size,
-           "$R render links/scene/spheres.gltf -o ./new/../new/f.exr" + size,
-           "cd scene && $R render spheres.gltf -o ../up.png" + size,
-           "cd scene && $R render ../links/scene/linked.gltf -o \"$PWD/../deep/er/f.png\" --trace t/race.json" + size +
-               " || cd scene && mkdir -p t && $R render spheres.gltf -o ../deep/er/f.png --trace t/race.json" + size,
-           "$R render scene/spheres.gltf -o g.exr --journal - < j.json" + size,
-           "$R render scene/spheres.gltf -o g.exr --journal plain.json" + size,
-           "$R preprocess scene/spheres.gltf -o links/disk/new/c/" + size,
-           "$R preprocess scene/spheres.gltf -o links/disk/new/c" + size,
-           "$R preprocess scene/spheres.gltf -o links/disk/new/c --overwrite --samples 2" + size,
-           std::string("$R replay links/c j.json -o runs/of/night --verify --quiet"),
-           std::string("$R replay links/c - -o runs/stdin --quiet < j.json"),
-           std::string("$R replay c /dev/stdin -o runs/named --quiet < read/../j2.json || true"),
-           std::string("cp j.json other.json && $R replay c/ j.json other.json -o links/disk/runs --quiet"),
-           std::string("mkdir spill && $R replay c j.json -o runs/spilt --spill spill --memory 600M --access-log "
-                       "logs.txt --quiet && $R tune logs.txt --quiet"),
-           std::string("$R check links/c --quiet"),
-           std::string("$R plan c j.json --json plan.json --quiet"),
-           std::string("$R compare runs/of/night runs/stdin -o page/of/it --quiet"),
-           std::string("$R compare f.exr new/f.exr --json=same.json --html same.html --exact --quiet"),
-           std::string("mkdir far && mv j.json far/j.json && cp paint.png far && "
-                       "$R replay c far/j.json -o runs/far --quiet && $R blame runs/far 3,3 --quiet"),
-           std::string("$R journal diff scene/spheres.gltf links/scene/linked.gltf -o drafts/d.json --quiet || true"),
-           std::string("$R inspect scene/spheres.gltf --look > look.txt"),
-           std::string("$R inspect far/j.json --scene links/c --quiet"),
-           std::string("$R inspect runs/far > run.txt && $R inspect links/c > cache.txt"),
-       }) {
+  fs::create_directories(at("far"));
+  for (const char* name : {"j.json", "paint.png"}) fs::copy_file(at(name), at("far/") + name);
+  fs::copy_file(at("j.json"), at("other.json"));
+  std::ofstream(at("dim.json")) << R"({"relook": "journal/1", "steps": [{"name": "dim", "edit": [
+      {"op": "replace", "path": "/lights/Lamp/intensity", "value": 20}]}]})";
+  const std::vector<std::string> lines{
+      "$R render scene/spheres.gltf -o f.exr $S",
+      "$R render scene/linked.gltf -o links/disk/a/b/c/f.exr $S",
+      "$R render links/scene/spheres.gltf -o ./new/../new/f.exr $S",
+      "cd scene && $R render spheres.gltf -o ../up.png $S",
+      "cd scene && $R render ../links/scene/linked.gltf -o $PWD/../deep/er/f.png --trace race.json $S",
+      "$R render scene/spheres.gltf -o g.exr --journal - $S < j.json",
+      "$R render scene/spheres.gltf -o g.exr --journal plain.json $S",
+      "$R render scene/spheres.gltf -o g.exr --journal /dev/stdin $S < dim.json",
+      "$R preprocess scene/spheres.gltf -o links/disk/new/c/ $S",
+      "$R preprocess scene/spheres.gltf -o links/disk/new/c $S",
+      "$R preprocess scene/spheres.gltf -o links/disk/new/c --overwrite --samples 2 $S",
+      "$R replay links/c j.json -o runs/of/night --verify --quiet",
+      "$R replay links/c - -o runs/stdin --quiet < j.json",
+      "$R replay c/ far/j.json other.json -o links/disk/runs --quiet",
+      "mkdir here && cd here && $R replay ../c ../j.json -o . --quiet",
+      "mkdir spill && $R replay c j.json -o runs/spilt --spill spill --memory 600M --access-log log.txt --quiet",
+      "$R tune log.txt --quiet",
+      "$R check links/c --quiet",
+      "$R plan c j.json --json plan.json --quiet",
+      "$R compare runs/of/night runs/stdin -o page/of/it --quiet",
+      "$R compare g.exr g.exr --json=same.json --html same.html --exact --quiet",
+      "$R replay c far/j.json -o far/run --quiet && $R blame far/run 3,3 --quiet",
+      "mv far moved && $R blame moved/run 3,3 --cache links/c --journal moved/j.json --quiet",
+      "$R journal wedge scene/spheres.gltf /lights/Lamp/intensity 5 10 -o wedge.json --quiet",
+      "$R inspect scene/spheres.gltf --look > look.txt",
+      "$R inspect moved/j.json --scene links/c --quiet",
+      "$R inspect moved/run && $R inspect links/c"};
+  for (const std::string& line : lines) {
     SCOPED_TRACE(line);
-    expect_done(shell(at(""), line));
+    expect_done(shell(line));
   }
 }
 
@@ -240,6 +242,27 @@ TEST_F(SandboxedProgram, follows_links_in_the_folders_that_it_is_given) {
     fs::create_symlink(frame.path(), at("plates") + "/" + frame.path().filename().string());
   expect_done(relook({"compare", at("run"), at("plates")}));
   expect_done(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--fresh"}));
+}
+
+TEST_F(SandboxedProgram, finds_the_tables_of_a_display_view) {
+  for (const char* name : {"views", "tables", "out"}) fs::create_directories(at(name));
+  std::ofstream(at("tables/half.cube")) << "LUT_1D_SIZE 2\n0 0 0\n0.5 0.5 0.5\n";
+  for (const char* places : {"\"luts:../tables\"", "\n  - luts\n  - ../tables"}) {
+    std::ofstream(at("views/config.ocio")) << "ocio_profile_version: 2\nsearch_path: " << places << R"(
+roles: {default: raw, scene_linear: linear}
+displays:
+  Wall:
+    - !<View> {name: Half, colorspace: half}
+colorspaces:
+  - !<ColorSpace> {name: raw, isdata: true}
+  - !<ColorSpace> {name: linear}
+  - !<ColorSpace>
+    name: half
+    from_scene_reference: !<FileTransform> {src: half.cube, interpolation: linear}
+)";
+    expect_done(relook({"render", at("scene/spheres.gltf"), "-o", at("out/f.png"), "--resolution", "16x9"},
+                       {"env", "OCIO=" + at("views/config.ocio")}));
+  }
 }
 
 TEST_F(SandboxedProgram, still_refuses_an_output_deep_inside_a_cache) {
