@@ -25,12 +25,6 @@ std::string label_of(const StepReport& entry) {
   return entry.is_whole_step ? std::to_string(entry.place.step) : step_label(entry.place);
 }
 
-ChangeClass change_class_of(const std::string& name) {
-  for (const ChangeClass change : {ChangeClass::optical, ChangeClass::geometric, ChangeClass::mixed})
-    if (change_class_name(change) == name) return change;
-  return ChangeClass::color;
-}
-
 /// What the entry of a frame that another command has made says of the frame itself.
 void take_over(const Json& kept, StepReport& entry) {
   entry.has_overlays = kept.at("overlays").get<bool>();
