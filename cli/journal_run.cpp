@@ -261,6 +261,7 @@ void JournalRun::end_numbered(std::uint32_t step) {
   entry.seconds = Seconds();
   entry.reasons = {entry.is_drag ? "the selection is released where the last entry put it"
                                  : "the last value of the wedge stays"};
+  if (entry.is_drag) entry.counters.samples_total = plan_.samples();  // also where all frames were there
   if (is_dragging_) {
     const StepResult result = replayer_.release();
     is_dragging_ = false;

@@ -33,6 +33,8 @@ class RunPlan {
   /// The steps whose frames are asked for; 0 is the frame before any.
   [[nodiscard]] std::uint32_t first_step() const { return first_; }
   [[nodiscard]] std::uint32_t last_step() const { return last_; }
+  /// Of a frame.
+  [[nodiscard]] std::uint64_t samples() const { return samples_; }
   [[nodiscard]] std::size_t frames() const { return frames_; }
   [[nodiscard]] std::size_t kept_frames() const { return kept_frames_; }
   /// Whether frame `frame` (from 0) of a step is there; then its entry is.
