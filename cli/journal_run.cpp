@@ -25,12 +25,6 @@ std::string label_of(const StepReport& entry) {
   return entry.is_whole_step ? std::to_string(entry.place.step) : step_label(entry.place);
 }
 
-ChangeClass change_class_of(const std::string& name) {
-  for (const ChangeClass change : {ChangeClass::optical, ChangeClass::geometric, ChangeClass::mixed})
-    if (change_class_name(change) == name) return change;
-  return ChangeClass::color;
-}
-
 /// What the entry of a frame that another command has made says of the frame itself.
 void take_over(const Json& kept, StepReport& entry) {
   entry.has_overlays = kept.at("overlays").get<bool>();
@@ -267,6 +261,7 @@ void JournalRun::end_numbered(std::uint32_t step) {
   entry.seconds = Seconds();
   entry.reasons = {entry.is_drag ? "the selection is released where the last entry put it"
                                  : "the last value of the wedge stays"};
+  if (entry.is_drag) entry.counters.samples_total = plan_.samples();  // also where all frames were there
   if (is_dragging_) {
     const StepResult result = replayer_.release();
     is_dragging_ = false;

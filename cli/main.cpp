@@ -1,10 +1,13 @@
 // The program: parses, runs one verb, and is the only place that catches, prints errors and picks the exit code.
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <optional>
+#include <string_view>
 
 #include "base/parallel.h"
 #include "outputs.h"
+#include "reach.h"
 #include "scene/image_library.h"
 #include "standard_streams.h"
 #include "verbs.h"
@@ -65,7 +68,14 @@ int guarded(const Work& work, const Report& report) {
 /// Others read, and write a small file in the end, if any.
 bool makes_pictures(Verb verb) { return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay; }
 
+/// RELOOK_SANDBOX=off is for debuggers and tools that trace, start programs or write files of their own.
+bool wants_sandbox() {
+  const char* wish = std::getenv("RELOOK_SANDBOX");
+  return wish == nullptr || std::string_view(wish) != "off";
+}
+
 ExitCode run(const Arguments& arguments) {
+  if (wants_sandbox()) enter_sandbox(reach_of(arguments));  // before Interrupt starts a thread
   Interrupt interrupt;
   Console console(arguments, interrupt);
   const auto report = [&](ExitCode code, const char* what) { console.error(code, what); };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/error.h"
-#include "outputs.h"
+#include "named_files.h"
 
 namespace relook {
 namespace {

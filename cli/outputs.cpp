@@ -12,74 +12,12 @@
 
 #include "base/error.h"
 #include "cache/cache_folder.h"
-#include "report/own_file.h"
+#include "named_files.h"
 #include "report/progress_file.h"
 #include "report/report_file.h"
 
 namespace relook {
 namespace {
-
-struct Output {
-  std::filesystem::path path;
-  std::string_view option;
-  std::optional<OwnKind> kind;  // none: a folder
-};
-struct Input {
-  std::filesystem::path path;
-  std::string_view what;
-};
-
-std::vector<Output> outputs_of(const Arguments& arguments) {
-  std::vector<Output> outputs;
-  const auto add = [&](const std::filesystem::path& path, std::string_view option, std::optional<OwnKind> kind) {
-    if (!path.empty()) outputs.push_back({path, option, kind});
-  };
-  switch (arguments.verb) {
-    case Verb::render:
-      add(arguments.output, "-o", is_preview_name(arguments.output) ? OwnKind::preview : OwnKind::frame);
-      break;
-    case Verb::journal:
-      add(arguments.output, "-o", OwnKind::journal);
-      break;
-    case Verb::compare:
-      add(arguments.output, "-o", std::nullopt);
-      if (!arguments.output.empty()) {
-        add(std::filesystem::path(arguments.output) / "compare.json", "-o", OwnKind::comparison);
-        add(std::filesystem::path(arguments.output) / "compare.html", "-o", OwnKind::page);
-      }
-      add(arguments.json_file, "--json", OwnKind::comparison);
-      add(arguments.html, "--html", OwnKind::page);
-      break;
-    case Verb::plan:
-      add(arguments.json_file, "--json", OwnKind::plan);
-      break;
-    case Verb::replay:
-      add(arguments.output, "-o", std::nullopt);
-      add(arguments.access_log, "--access-log", OwnKind::access_log);
-      break;
-    default:
-      add(arguments.output, "-o", std::nullopt);
-  }
-  add(arguments.trace, "--trace", OwnKind::trace);
-  return outputs;
-}
-
-std::vector<Input> inputs_of(const Arguments& arguments) {
-  std::vector<Input> inputs;
-  const auto add = [&](const std::string& path, std::string_view what) {
-    if (!path.empty() && path != "-") inputs.push_back({path, what});
-  };
-  const bool has_one = arguments.verb == Verb::blame ||
-                       (arguments.verb == Verb::journal && arguments.journal_source != JournalSource::diff);
-  const std::size_t count = has_one ? 1 : arguments.verb == Verb::plan ? 2 : arguments.inputs.size();
-  for (std::size_t i = 0; i < std::min(count, arguments.inputs.size()); ++i) add(arguments.inputs[i], "an input");
-  add(arguments.journal, "the journal");
-  add(arguments.view.look_patch, "the patch of --look");
-  add(arguments.scene, "the scene");
-  add(arguments.cache, "the cache");
-  if (const char* config = std::getenv("OCIO")) add(config, "the config of $OCIO");
-  return inputs;
-}
 
 /// The file or folder itself, whatever it is called; what is not there yet by the name it would have.
 std::filesystem::path resolved(const std::filesystem::path& path) {
@@ -125,18 +63,18 @@ bool is_linked_in(const std::filesystem::path& file, const std::filesystem::path
 }
 
 /// Whether an output is a file in a folder of inputs, and no earlier output there.
-bool is_read_from(const Output& output, const std::filesystem::path& folder) {
+bool is_read_from(const NamedOutput& output, const std::filesystem::path& folder) {
   std::error_code error;
   if (!output.kind || !std::filesystem::is_directory(folder, error)) return false;
   return std::filesystem::exists(output.path, error) && !is_own_file(output.path, *output.kind) &&
          (lies_in(output.path, folder) || is_linked_in(output.path, folder));
 }
 
-[[noreturn]] void refuse(const Output& output, const std::string& why) {
+[[noreturn]] void refuse(const NamedOutput& output, const std::string& why) {
   throw UsageError(output.path.string(), std::string(output.option) + ": " + why);
 }
 
-void check_file(const Output& output, bool overwrites) {
+void check_file(const NamedOutput& output, bool overwrites) {
   std::error_code error;
   const auto status = std::filesystem::status(output.path, error);
   const auto name = std::filesystem::symlink_status(output.path, error);
@@ -160,10 +98,10 @@ bool is_reserved(const std::filesystem::path& path, const std::filesystem::path&
   return std::ranges::find(kNames, first) != kNames.end();
 }
 
-void check_together(const std::vector<Output>& outputs, Verb verb) {
+void check_together(const std::vector<NamedOutput>& outputs, Verb verb) {
   for (std::size_t i = 0; i < outputs.size(); ++i)
     for (std::size_t k = 0; k < outputs.size(); ++k) {
-      const Output &one = outputs[i], &other = outputs[k];
+      const NamedOutput &one = outputs[i], &other = outputs[k];
       if (k < i && are_one(one.path, other.path))
         refuse(one, "is the output of " + std::string(other.option) + ", too");
       if (i == k || other.kind || !lies_in(one.path, other.path)) continue;
@@ -174,18 +112,11 @@ void check_together(const std::vector<Output>& outputs, Verb verb) {
 
 }  // namespace
 
-bool is_preview_name(const std::filesystem::path& output) {
-  std::string suffix = output.extension().string();
-  std::ranges::transform(suffix, suffix.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c; });
-  if (suffix != ".exr" && suffix != ".png")
-    throw UsageError(output.string(), "-o: a frame is called .exr, or .png for a preview");
-  return suffix == ".png";
-}
-
 void check_outputs(const Arguments& arguments) {
-  const std::vector<Output> outputs = outputs_of(arguments);
-  for (const Input& input : inputs_of(arguments)) require_not_outputs(arguments, std::span(&input.path, 1), input.what);
-  for (const Output& output : outputs) {
+  const std::vector<NamedOutput> outputs = outputs_of(arguments);
+  for (const NamedInput& input : inputs_of(arguments))
+    require_not_outputs(arguments, std::span(&input.path, 1), input.what);
+  for (const NamedOutput& output : outputs) {
     const std::optional<std::filesystem::path> cache = enclosing_cache(resolved(output.path));
     const bool is_cache_itself =
         cache && arguments.verb == Verb::preprocess && !output.kind && are_one(*cache, output.path);
@@ -197,7 +128,7 @@ void check_outputs(const Arguments& arguments) {
 
 void require_not_outputs(const Arguments& arguments, std::span<const std::filesystem::path> inputs,
                          std::string_view what) {
-  for (const Output& output : outputs_of(arguments))
+  for (const NamedOutput& output : outputs_of(arguments))
     for (const std::filesystem::path& input : inputs)
       if (are_one(output.path, input) || is_read_from(output, input))
         refuse(output, "is " + std::string(what) + ": an input is never replaced");

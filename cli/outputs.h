@@ -17,7 +17,4 @@ void check_outputs(const Arguments& arguments);
 void require_not_outputs(const Arguments& arguments, std::span<const std::filesystem::path> inputs,
                          std::string_view what);
 
-/// Whether `render` is to write a preview (.png), not a frame (.exr). Throws UsageError for any other suffix.
-[[nodiscard]] bool is_preview_name(const std::filesystem::path& output);
-
 }  // namespace relook

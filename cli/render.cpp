@@ -10,6 +10,7 @@
 #include "engine/preview.h"
 #include "engine/report.h"
 #include "load_scene.h"
+#include "named_files.h"
 #include "outputs.h"
 #include "report/edit_hashes.h"
 #include "verbs.h"

@@ -229,6 +229,7 @@ ExitCode run_replay(const Arguments& given, Console& console) {
   require_sound(read_manifest(cache, manifest), cache);
   take_structures_of(manifest, arguments, console);
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, view.get());
+  for (const RunPlan& plan : plans) console.warn(plan.warnings());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
   // Also for runs that are complete: the cache and the journals must be as the command says.
   ReplayCommand command(arguments, console, journals, plans, manifest, view);

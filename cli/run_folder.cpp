@@ -28,17 +28,19 @@ std::string new_command_number() {
 
 using StepRanges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// The ranges of a report; those that meet are one.
-StepRanges ranges_of(const Json& parts) {
+/// The ranges of a report of a journal with so many steps.
+StepRanges ranges_of(const Json& parts, std::uint32_t steps) {
   StepRanges ranges;
   for (const Json& part : parts.is_array() ? parts : Json::array()) {
     unsigned from = 0, to = 0;
-    if (part.is_string() && std::sscanf(part.get_ref<const std::string&>().c_str(), "%u-%u", &from, &to) == 2)
+    if (part.is_string() && std::sscanf(part.get_ref<const std::string&>().c_str(), "%u-%u", &from, &to) == 2 &&
+        from <= to && to <= steps)
       ranges.emplace_back(from, to);
   }
   return ranges;
 }
 
+/// Those that meet are one.
 StepRanges joined(StepRanges ranges) {
   std::ranges::sort(ranges);
   StepRanges result;
@@ -154,20 +156,37 @@ void RunFolder::append_notes() {
   for (const StepReport& step : std::exchange(notes_, {})) progress_->append(step_json(step));
 }
 
+/// Those of this command, and those of others that are believed.
+std::vector<std::pair<LedgerKey, RunLedger::Note>> RunFolder::sound_notes(const RunLedger& ledger) const {
+  std::vector<std::pair<LedgerKey, RunLedger::Note>> notes;
+  for (const auto& [key, note] : ledger.notes())
+    if (plan_.is_of_journal(key, note)) notes.emplace_back(key, note);
+  std::vector<char> is_sound(notes.size());
+  const Uninterrupted to_the_end;
+  parallel_for(notes.size(), [&](std::size_t i) {
+    const auto& [key, note] = notes[i];
+    const Json entry = ledger.entry(note);
+    std::error_code error;
+    const bool is_ours = entry.at("command") == command_;
+    is_sound[i] = is_ours ? std::filesystem::is_regular_file(path_ / plan_.frame_name_of(key), error)
+                          : plan_.is_sound(key, entry);
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < notes.size(); ++i)
+    if (is_sound[i] != 0) notes[kept++] = std::move(notes[i]);
+  notes.resize(kept);
+  return notes;
+}
+
 /// Whether all frames of the journal are in it.
 bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   const RunLedger ledger(path_);
   noted_bytes_ = progress_->size_bytes();
   const Json& before = ledger.head();
-  std::vector<std::pair<LedgerKey, RunLedger::Note>> notes;  // with their frames
+  const std::vector<std::pair<LedgerKey, RunLedger::Note>> notes = sound_notes(ledger);
   std::vector<std::size_t> frames_there(journal_.steps.size() + 1);
-  for (const auto& [key, note] : ledger.notes()) {
-    std::error_code error;
-    if (!plan_.is_of_journal(key, note)) continue;
-    if (!std::filesystem::is_regular_file(path_ / plan_.frame_name_of(key), error)) continue;
-    notes.emplace_back(key, note);
+  for (const auto& [key, note] : notes)
     if (plan_.is_frame(key)) ++frames_there[key.first];
-  }
   const auto missing_in = [&](std::uint32_t first, std::uint32_t last) {
     std::size_t missing = 0;
     for (std::uint32_t step = first; step <= std::min<std::size_t>(last, journal_.steps.size()); ++step)
@@ -175,7 +194,8 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
     return missing;
   };
   // Asked for by others, too: what is missing there is missing, unless somebody is at it.
-  StepRanges ranges = ranges_of(before.is_object() ? before.value("parts", Json()) : Json());
+  const auto steps = static_cast<std::uint32_t>(journal_.steps.size());
+  StepRanges ranges = ranges_of(before.is_object() ? before.value("parts", Json()) : Json(), steps);
   ranges.emplace_back(plan_.first_step(), plan_.last_step());
   for (const RunLedger::Task& task : ledger.tasks()) ranges.emplace_back(task.first_step, task.last_step);
   report.parts.clear();
@@ -194,11 +214,11 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   for (const auto& [key, note] : notes) {
     Json entry = ledger.entry(note);
     entry["resumed"] = entry.at("command") != command_;
-    if (key.first > 0) entry["name"] = journal_.steps[key.first - 1].name;
+    entry["name"] = key.first > 0 ? journal_.steps[key.first - 1].name : "base";
     report_file_->add(entry);
   }
   report_file_->publish();
-  return missing_in(0, static_cast<std::uint32_t>(journal_.steps.size())) == 0;
+  return missing_in(0, steps) == 0;
 }
 
 void RunFolder::write_page(const RunReport& report, bool is_quick, const std::function<void()>& check) {

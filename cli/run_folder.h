@@ -60,6 +60,7 @@ class RunFolder {
   void finish_writing();
   void append_notes();
   void encode_and_write(const StepReport& step, const FrameMeta& meta, const std::optional<Bytes>& layered);
+  [[nodiscard]] std::vector<std::pair<LedgerKey, RunLedger::Note>> sound_notes(const RunLedger& ledger) const;
   [[nodiscard]] bool write_report_file(RunReport& report, bool interrupted);
   void write_page(const RunReport& report, bool is_quick, const std::function<void()>& check);
 

@@ -1,121 +1,28 @@
 #include "run_plan.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <charconv>
-#include <cstring>
+#include <cstdio>
 #include <iterator>
-#include <set>
 
 #include "base/error.h"
-#include "base/file_names.h"
-#include "base/files.h"
-#include "base/hash.h"
+#include "base/parallel.h"
 #include "cache/cache.h"
-#include "report/own_file.h"
-#include "report/progress_file.h"
-#include "report/report_file.h"
 #include "report/run_source.h"
+#include "run_files.h"
 
 namespace relook {
-namespace {
-
-struct RunPart {
-  std::string_view folder, suffix;
-  OwnKind kind;
-};
-constexpr std::array<RunPart, 4> kParts{{{"frames", ".exr", OwnKind::frame},
-                                         {"previews", ".png", OwnKind::preview},
-                                         {"overlays", ".png", OwnKind::preview},
-                                         {"pixels", ".js", OwnKind::page_data}}};
-constexpr std::array<std::pair<std::string_view, OwnKind>, 3> kFiles{
-    {{kReportName, OwnKind::report}, {"report.html", OwnKind::page}, {kProgressName, OwnKind::progress}}};
-
-bool is_there(const std::filesystem::path& path) {
-  std::error_code error;
-  return std::filesystem::symlink_status(path, error).type() != std::filesystem::file_type::not_found;
-}
-
-/// The entries of a folder that are not the system's, in order.
-std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> entries;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    if (!is_system_name(entry.path().filename().string())) entries.push_back(entry.path());
-  if (error && is_there(folder)) throw IoError(folder.string(), "cannot be read: " + error.message());
-  std::ranges::sort(entries);
-  return entries;
-}
-
-/// Where a link stands in place of a folder of the run, what lies beyond it is written to and never removed.
-std::vector<std::filesystem::path> entries_not_beyond_link(const std::filesystem::path& folder) {
-  std::error_code error;
-  const bool is_folder = std::filesystem::symlink_status(folder, error).type() == std::filesystem::file_type::directory;
-  return is_folder ? entries_of(folder) : std::vector<std::filesystem::path>();
-}
-
-std::string unfinished_name(const std::filesystem::path& path) {
-  return std::string(name_of_temporary(path.filename().string()));
-}
-
-/// "0003_01" of "0003_01.exr", "0003_01_groups.png".
-std::string frame_stem(const std::string& name) {
-  const std::size_t end = name.find_first_not_of("0123456789_");
-  const std::string stem = name.substr(0, end);
-  return stem.ends_with('_') ? stem.substr(0, stem.size() - 1) : stem;
-}
-
-/// Whether a name is one that frames, previews or overlays have: 0003, 0003_01, with a kind and a suffix.
-bool is_frame_stem(const std::string& name) {
-  const std::string stem = frame_stem(name);
-  const std::size_t step_digits = std::min(stem.find('_'), stem.size());
-  const std::string_view rest = std::string_view(name).substr(std::min(stem.size(), name.size()));
-  const bool has_kind =
-      rest == ".exr" || rest == ".png" || rest == "_dependent.png" || rest == "_touched.png" || rest == "_groups.png";
-  return has_kind && step_digits >= 4 && step_digits <= 9 && std::ranges::count(stem, '_') <= 1;
-}
-
-std::uint32_t step_of(const std::string& name) {
-  std::uint32_t step = 0;
-  std::from_chars(name.data(), name.data() + name.size(), step);
-  return step;
-}
-
-void remove_file(const std::filesystem::path& path) {
-  std::error_code error;
-  std::filesystem::remove(path, error);
-  if (error) throw IoError(path.string(), "cannot be removed: " + error.message());
-}
-
-/// Whether a file is as it was when it was noted.
-bool is_sound(const std::filesystem::path& path, const Json& stamp) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return false;
-  if (static_cast<std::uint64_t>(status.st_size) != stamp.at("bytes").get<std::uint64_t>()) return false;
-  const auto modified = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
-  return modified == stamp.at("modified").get<std::int64_t>() ||
-         hash128(read_file(path)) == stamp.at("hash").get<std::string>();
-}
-
-}  // namespace
-
-FileStamp stamp_of(const std::filesystem::path& path, std::string hash) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0)
-    throw IoError(path.string(), std::string("cannot be read: ") + std::strerror(errno));
-  return {std::move(hash), static_cast<std::uint64_t>(status.st_size),
-          std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec};
-}
 
 RunPlan::RunPlan(const Arguments& arguments, const Journal& journal, std::filesystem::path folder, Json source)
     : arguments_(arguments),
       journal_(journal),
       folder_(std::move(folder)),
       source_(std::move(source)),
-      hashes_(journal) {
+      hashes_(journal),
+      files_(std::make_unique<NotedFiles>(folder_)) {
+  unsigned width = 0, height = 0;
+  std::sscanf(source_.at("resolution").get_ref<const std::string&>().c_str(), "%ux%u", &width, &height);
+  pixels_ = std::uint64_t{width} * height;
+  samples_ = pixels_ * std::stoull(source_.at("samples").get_ref<const std::string&>());
   const auto steps = static_cast<std::uint32_t>(journal.steps.size());
   first_ = arguments.steps ? arguments.steps->first : 0;
   last_ = arguments.steps ? arguments.steps->last.value_or(steps) : steps;
@@ -135,7 +42,7 @@ void RunPlan::look_into_folder() {
   if (!std::filesystem::is_directory(folder_, error)) throw UsageError(folder_.string(), "is there and is no folder");
   const std::vector<std::filesystem::path> entries = entries_of(folder_);
   if (entries.empty()) return;
-  for (const auto& [name, kind] : kFiles)
+  for (const auto& [name, kind] : kRunFiles)
     if (is_there(folder_ / name) && !is_own_file(folder_ / name, kind))
       throw UsageError((folder_ / name).string(), "is there and not of relook: not replaced");
   ledger_.emplace(folder_);
@@ -200,10 +107,10 @@ void RunPlan::require_known_files() const {
   };
   for (const std::filesystem::path& path : entries_of(folder_)) {
     const std::string name = path.filename().string();
-    if (std::ranges::find(kFiles, name, [](const auto& file) { return file.first; }) != kFiles.end()) continue;
-    const auto part = std::ranges::find(kParts, name, &RunPart::folder);
+    if (std::ranges::find(kRunFiles, name, [](const auto& file) { return file.first; }) != kRunFiles.end()) continue;
+    const auto part = std::ranges::find(kRunParts, name, &RunPart::folder);
     std::error_code error;
-    if (part == kParts.end() || !std::filesystem::is_directory(path, error)) {
+    if (part == kRunParts.end() || !std::filesystem::is_directory(path, error)) {
       if (unfinished_name(path).empty()) refuse(path);
       continue;
     }
@@ -213,21 +120,38 @@ void RunPlan::require_known_files() const {
   }
 }
 
-bool RunPlan::is_kept(const RunLedger::Note& note, const Json& entry) const {
-  if (arguments_.fresh && !note.is_fresh) return false;
-  try {
-    if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
-    if (arguments_.verify_percent && entry.at("verify_percent").is_null()) return false;
-    if (arguments_.verify_percent && entry.at("verify_percent").get<double>() < *arguments_.verify_percent)
-      return false;
-    for (const auto& [name, stamp] : entry.at("files").items())
-      if (!is_sound(folder_ / name, stamp)) return false;
-    return entry.at("files").contains(entry.at("frame").get<std::string>());
-  } catch (const Json::exception&) {
-    return false;
-  } catch (const InputError&) {
-    return false;
-  }
+/// Of this command's wishes: is what was made enough?
+bool RunPlan::is_enough(const Json& entry) const {
+  if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
+  if (!arguments_.verify_percent) return true;
+  const Json& verified = entry.at("verify_percent");
+  return !verified.is_null() && verified.get<double>() >= *arguments_.verify_percent;
+}
+
+KnownFrame RunPlan::known_frame(const LedgerKey& key) const {
+  const auto& [step, number] = key;
+  KnownFrame known;
+  known.edits = expected_edits(key).value_or("");
+  known.frame = frame_name_of(key);
+  known.preview = preview_name(place_of_key(key));
+  known.is_base = step == 0;
+  known.is_whole_step = !is_frame(key);
+  known.pixels = pixels_;
+  known.samples = samples_;
+  return known;
+}
+
+/// Whether the header of a frame says what its entry does: so that no frame passes for another's.
+bool RunPlan::is_its_frame(const LedgerKey& key, const Json& entry) const {
+  const std::optional<FrameMeta> meta = own_frame_meta(folder_ / entry.at("frame").get_ref<const std::string&>());
+  return meta && meta->scene_hash == source_.at("scene") && meta->edits_hash == entry.at("edits") &&
+         meta->step == step_label(place_of_key(key)) && (!is_frame(key) || meta->change_class == entry.at("class"));
+}
+
+bool RunPlan::is_sound(const LedgerKey& key, const Json& entry) {
+  if (!agrees(entry, known_frame(key))) return false;
+  const bool answers_for_it = key.first >= first_ && key.first <= last_;
+  return answers_for_it ? files_->hold(entry) && is_its_frame(key, entry) : files_->seem_to_hold(entry);
 }
 
 void RunPlan::require_free(const std::string& name) const {
@@ -235,45 +159,121 @@ void RunPlan::require_free(const std::string& name) const {
   std::error_code error;
   if (!is_there(path) || (std::filesystem::is_regular_file(path, error) && std::filesystem::is_empty(path, error)))
     return;
-  const auto part = std::ranges::find(kParts, name.substr(0, name.find('/')), &RunPart::folder);
+  const auto part = std::ranges::find(kRunParts, name.substr(0, name.find('/')), &RunPart::folder);
   if (!is_own_file(path, part->kind))
     throw UsageError(path.string(), "is where a file of the run is to go, and not of relook: not replaced");
 }
 
 void RunPlan::find_kept() {
-  frames_ = kept_frames_ = 0;
-  pixels_different_ = 0;
+  unsound_frames_ = 0;
   kept_.clear();
-  bool has_all_in_report = ledger_.has_value();
+  keeps_whole_.clear();
+  for (std::uint32_t step = first_; step <= last_; ++step) kept_.emplace_back(frames_in(step), false);
+  keeps_whole_.assign(kept_.size(), false);
+  pixels_different_ = 0;
+  if (ledger_ && !replaces_all_) judge_notes();
+  count_kept();
+}
+
+/// Files are read, and entries parsed, by many threads.
+void RunPlan::judge_notes() {
+  std::vector<const std::pair<const LedgerKey, RunLedger::Note>*> notes;
+  for (const auto& entry : ledger_->notes()) {
+    const auto& [key, note] = entry;
+    const bool is_wanted = key.first >= first_ && key.first <= last_ && !(arguments_.fresh && !note.is_fresh);
+    if (is_wanted && is_of_journal(key, note)) notes.push_back(&entry);
+  }
+  struct Judgement {
+    bool is_sound = false, is_kept = false;
+    std::uint64_t pixels_different = 0;
+  };
+  std::vector<Judgement> judgements(notes.size());
+  parallel_for(notes.size(), [&](std::size_t i) {
+    const auto& [key, note] = *notes[i];
+    const Json entry = ledger_->entry(note);
+    Judgement& judgement = judgements[i];
+    judgement.is_sound = is_sound(key, entry);
+    judgement.is_kept = judgement.is_sound && is_enough(entry);
+    if (judgement.is_kept && entry.at("verify").is_object())
+      judgement.pixels_different = entry.at("verify").at("pixels_different").get<std::uint64_t>();
+  });
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    const auto& [key, note] = *notes[i];
+    unsound_frames_ += judgements[i].is_sound ? 0 : 1;
+    const std::size_t frame = key.second == kWholeStep ? 0 : key.second - 1;
+    if (!is_frame(key)) {
+      keeps_whole_[key.first - first_] = judgements[i].is_sound && sums_up(key.first, ledger_->entry(note));
+      continue;
+    }
+    kept_[key.first - first_][frame] = judgements[i].is_kept;
+    pixels_different_ += judgements[i].pixels_different;
+  }
+}
+
+/// Whether the entry of a drag or wedge as a whole says of it what those of its frames say, which come before it. When
+/// one of these is missing, it is made anew in any case.
+bool RunPlan::sums_up(std::uint32_t step, const Json& whole) const {
+  ChangeClass change = ChangeClass::color;
+  for (std::size_t frame = 0; frame < frames_in(step); ++frame) {
+    if (!keeps(step, frame)) return false;
+    const Json entry = kept_entry(step, frame);
+    change = combined(change, change_class_of(entry.at("class").get_ref<const std::string&>()));
+    const bool is_last = frame + 1 == frames_in(step);
+    for (const char* key : {"files", "verify", "verify_percent", "overlays"})
+      if (is_last && whole.at(key) != entry.at(key)) return false;
+  }
+  return whole.at("class") == change_class_name(change);
+}
+
+/// Also finds what is in the way of frames that are to be made.
+void RunPlan::count_kept() {
+  frames_ = kept_frames_ = 0;
+  bool has_all_in_report = ledger_ && ledger_->has_whole_report();
+  const auto is_reported = [&](const LedgerKey& key) {
+    const RunLedger::Note* note = ledger_->find(key);
+    return note != nullptr && note->is_in_report;
+  };
   for (std::uint32_t step = first_; step <= last_; ++step) {
     const std::size_t count = frames_in(step);
-    std::vector<bool>& kept = kept_.emplace_back(count, false);
     frames_ += count;
+    const LedgerKey whole{step, kWholeStep};
+    if (!is_frame(whole)) has_all_in_report = has_all_in_report && keeps_whole_[step - first_] && is_reported(whole);
     for (std::size_t frame = 0; frame < count; ++frame) {
-      const FramePlace here = place(step, frame);
-      const RunLedger::Note* note = ledger_ && !replaces_all_ ? ledger_->find(key_of(step, frame)) : nullptr;
-      if (note != nullptr && note->edits == hashes_.at(step, frame)) {
-        const Json entry = ledger_->entry(*note);
-        kept[frame] = is_kept(*note, entry) && entry.at("frame") == frame_name(here);
-        if (kept[frame] && entry.at("verify").is_object())
-          pixels_different_ += entry.at("verify").at("pixels_different").get<std::uint64_t>();
-        has_all_in_report = has_all_in_report && note->is_in_report;
+      if (keeps(step, frame)) {
+        ++kept_frames_;
+        has_all_in_report = has_all_in_report && is_reported(key_of(step, frame));
+      } else if (!replaces_all_) {
+        require_free_names(place(step, frame));
       }
-      kept_frames_ += kept[frame] ? 1 : 0;
-      if (kept[frame] || replaces_all_) continue;
-      require_free(frame_name(here));
-      require_free(preview_name(here));
-      if (!arguments_.overlays) continue;
-      for (const char* kind : {"_dependent.png", "_touched.png", "_groups.png"})
-        require_free("overlays/" + std::filesystem::path(frame_name(here)).stem().string() + kind);
     }
   }
+  const Json head = ledger_ ? ledger_->head() : Json();
+  const auto is_in_head = [&](const char* key, const auto& wanted) {
+    return head.is_object() && head.contains(key) && wanted(head.at(key));
+  };
   const bool wants_page = arguments_.report == ReportKind::html && !has_current_page();
-  const bool lacks_baseline = arguments_.baseline && ledger_ && ledger_->head().is_object() &&
-                              ledger_->head().value("full_render_seconds", Json()).is_null();
+  const bool lacks_baseline =
+      arguments_.baseline && is_in_head("full_render_seconds", [](const Json& value) { return value.is_null(); });
+  const bool has_whole_report =
+      has_all_in_report && is_in_head("interrupted", [](const Json& value) { return value == false; });
   is_complete_ = kept_frames_ == frames_ && !replaces_some_ && !wants_page && !lacks_baseline &&
-                 (arguments_.report == ReportKind::none ||
-                  (has_all_in_report && ledger_->head().is_object() && !ledger_->head().value("interrupted", true)));
+                 (arguments_.report == ReportKind::none || has_whole_report);
+}
+
+void RunPlan::require_free_names(const FramePlace& here) const {
+  require_free(frame_name(here));
+  require_free(preview_name(here));
+  if (!arguments_.overlays) return;
+  for (const char* kind : {"_dependent.png", "_touched.png", "_groups.png"})
+    require_free("overlays/" + std::filesystem::path(frame_name(here)).stem().string() + kind);
+}
+
+std::vector<std::string> RunPlan::warnings() const {
+  const std::size_t lines = ledger_ && !replaces_all_ ? ledger_->refused() : 0;
+  if (lines + unsound_frames_ == 0) return {};
+  return {folder_.string() + ": " + std::to_string(lines + unsound_frames_) +
+          " notes of finished frames are not as they were written, or the files are not as noted; such frames are made"
+          " again"};
 }
 
 std::size_t RunPlan::frames_in(std::uint32_t step) const {
@@ -303,10 +303,7 @@ Json RunPlan::kept_entry(std::uint32_t step, std::size_t frame) const {
   return ledger_->entry(*ledger_->find(key_of(step, frame)));
 }
 
-bool RunPlan::keeps_whole_step(std::uint32_t step) const {
-  const RunLedger::Note* note = ledger_ && !replaces_all_ ? ledger_->find({step, kWholeStep}) : nullptr;
-  return note != nullptr && note->edits == hashes_.after(step);
-}
+bool RunPlan::keeps_whole_step(std::uint32_t step) const { return keeps_whole_[step - first_]; }
 
 /// Whether report.html was written after report.json.
 bool RunPlan::has_current_page() const {
@@ -355,52 +352,12 @@ std::vector<Json> RunPlan::entries_to_stay() const {
   return entries;
 }
 
-std::string RunPlan::frame_name_of(const LedgerKey& key) const {
+FramePlace RunPlan::place_of_key(const LedgerKey& key) const {
   const auto& [step, number] = key;
-  if (number != kWholeStep) return frame_name(place(step, number - 1));
-  return frame_name(step == 0 ? FramePlace() : last_place_of(journal_.steps[step - 1], step));
+  if (number != kWholeStep) return place(step, number - 1);
+  return step == 0 ? FramePlace() : last_place_of(journal_.steps[step - 1], step);
 }
 
-/// With all steps locked. Files that relook has written, as frames of no step of this journal, or all of another run.
-void RunPlan::remove_replaced() const {
-  std::set<std::string> stems;  // of frames that stay
-  if (!replaces_all_)
-    for (const auto& [key, note] : ledger_->notes())
-      if (is_of_journal(key, note)) stems.insert(std::filesystem::path(frame_name_of(key)).stem().string());
-  for (const RunPart& part : kParts) {
-    if (part.folder == "pixels" && !replaces_all_) continue;  // the page sees to its own
-    const std::filesystem::path folder = folder_ / part.folder;
-    for (const std::filesystem::path& file : entries_not_beyond_link(folder)) {
-      const std::string unfinished = unfinished_name(file),
-                        name = unfinished.empty() ? file.filename().string() : unfinished;
-      if (!replaces_all_ && (!is_frame_stem(name) || stems.contains(frame_stem(name)))) continue;
-      if (!unfinished.empty() || is_own_file(file, part.kind)) remove_file(file);
-    }
-    std::error_code not_empty;
-    const bool is_folder =
-        std::filesystem::symlink_status(folder, not_empty).type() == std::filesystem::file_type::directory;
-    if (is_folder) std::filesystem::remove(folder, not_empty);
-  }
-  for (const std::string_view name : {kReportName, std::string_view("report.html")})
-    if (is_there(folder_ / name)) remove_file(folder_ / name);
-}
-
-void RunPlan::remove_unfinished_page() const {
-  for (const std::filesystem::path& file : entries_of(folder_))
-    if (unfinished_name(file) == "report.html") remove_file(file);
-}
-
-/// Temporary files of commands that were killed at the steps that are locked now, or while they wrote report.json.
-void RunPlan::remove_leftovers() const {
-  for (const RunPart& part : kParts)
-    for (const std::filesystem::path& file : entries_not_beyond_link(folder_ / part.folder)) {
-      const std::string name = unfinished_name(file);
-      const bool is_ours =
-          part.folder != "pixels" && is_frame_stem(name) && step_of(name) >= first_ && step_of(name) <= last_;
-      if (is_ours) remove_file(file);
-    }
-  for (const std::filesystem::path& file : entries_of(folder_))
-    if (unfinished_name(file) == kReportName) remove_file(file);
-}
+std::string RunPlan::frame_name_of(const LedgerKey& key) const { return frame_name(place_of_key(key)); }
 
 }  // namespace relook

@@ -1,5 +1,6 @@
 #include "version_text.h"
 
+#include "base/sandbox.h"
 #include "cache/arithmetic.h"
 #include "cache/container.h"
 #include "engine/report.h"
@@ -8,7 +9,7 @@ namespace relook {
 
 std::string version_text() {
   return "relook " + std::string(program_version()) + "\n" + arithmetic_text(own_arithmetic()) + "\ncache format " +
-         std::to_string(kCacheFormat);
+         std::to_string(kCacheFormat) + "\nsandbox: " + sandbox_text();
 }
 
 }  // namespace relook

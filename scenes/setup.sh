@@ -1,4 +1,4 @@
-# Sourced by demo.sh and ../tests/run.sh from the project's root: installs what is missing (Debian 12), configures, builds.
+# Sourced by demo.sh and the scripts in ../tests from the project's root: installs what is missing (Debian 12), configures, builds.
 
 # openimageio-tools: OpenImageIO's CMake files refuse to load without its programs.
 packages="g++ cmake make pkg-config python3 libembree-dev libopenimageio-dev openimageio-tools openexr libopenexr-dev \
@@ -25,9 +25,15 @@ install_packages() {
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing </dev/null
 }
 
-# build TARGET...: out of date parts only.
+# build_preset PRESET TARGET...: out of date parts only.
+build_preset() {
+  preset=$1
+  shift
+  echo "Building $* in build/$preset (a few minutes the first time)"
+  cmake --preset "$preset" --log-level=WARNING
+  cmake --build --preset "$preset" -j "$(nproc)" --target "$@"
+}
+
 build() {
-  echo "Building $* in build/release (a few minutes the first time)"
-  cmake --preset release --log-level=WARNING
-  cmake --build --preset release -j "$(nproc)" --target "$@"
+  build_preset release "$@"
 }

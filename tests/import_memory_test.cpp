@@ -83,21 +83,6 @@ Json scene_of(const std::vector<std::string>& images) {
   return scene;
 }
 
-/// Python starts the program, since what this process holds would count as the child's.
-constexpr const char* kMeasure = R"(
-import os, subprocess, sys
-child = subprocess.Popen(sys.argv[1:], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-output = child.stdout.read().decode()
-_, status, usage = os.wait4(child.pid, 0)
-print(os.waitstatus_to_exitcode(status), usage.ru_maxrss, output, end="")
-)";
-
-struct Measured {
-  int exit_code = -1;
-  double peak_mib = 0;
-  std::string output;
-};
-
 class ImportMemory : public testing::Test {
  protected:
   void TearDown() override { set_import_memory(kImportMemory); }
@@ -106,18 +91,11 @@ class ImportMemory : public testing::Test {
     std::ofstream(at(name), std::ios::binary) << content;
     return at(name);
   }
-  static Measured measured(std::vector<std::string> command) {
-    command.insert(command.begin(), {"python3", "-c", kMeasure, RELOOK_PROGRAM});
-    const std::string output = run_program(command).output;
-    const std::size_t code_end = output.find(' '), peak_end = output.find(' ', code_end + 1);
-    if (peak_end == std::string::npos) return {-1, 0, output};
-    return {std::stoi(output), std::stod(output.substr(code_end)) / 1024, output.substr(peak_end + 1)};
+  [[nodiscard]] MeasuredResult render(const std::string& scene, const std::string& option = "2G") const {
+    return measure_relook({"render", scene, "-o", at("x.exr"), "--overwrite", "--quiet", "--camera", "auto", "--lights",
+                           "auto", "--resolution", "16x9", "--import-memory", option});
   }
-  [[nodiscard]] Measured render(const std::string& scene, const std::string& option = "2G") const {
-    return measured({"render", scene, "-o", at("x.exr"), "--overwrite", "--quiet", "--camera", "auto", "--lights",
-                     "auto", "--resolution", "16x9", "--import-memory", option});
-  }
-  static void expect_refused(const Measured& result, const std::string& place) {
+  static void expect_refused(const MeasuredResult& result, const std::string& place) {
     EXPECT_EQ(result.exit_code, 4) << result.output;
     EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1) << result.output;
     EXPECT_NE(result.output.find(place), std::string::npos) << result.output;
@@ -137,7 +115,7 @@ TEST_F(ImportMemory, images_unpack_to_their_pyramid_and_nothing_beside_it) {
   constexpr double kPyramidMiB = 1366;  // of each: 2^28 texels of 4 bytes or 2^26 of 16, and a third
   for (const std::string name : {"1bit", "16bit"}) {
     const std::string scene = write(name + ".gltf", scene_of({name + ".png"}).dump());
-    const Measured kept = render(scene);
+    const MeasuredResult kept = render(scene);
     EXPECT_EQ(kept.exit_code, 0) << kept.output;
     EXPECT_LT(kept.peak_mib, kBaseMiB + kPyramidMiB);
     expect_refused(render(scene, "1G"), name + ".gltf: /images/image_0: the image of ");
@@ -168,7 +146,7 @@ TEST_F(ImportMemory, accessors_without_data_are_refused_before_columns_are_made)
   expect_refused(render(write("zeros.gltf", scene.dump()), "256M"), "zeros.gltf: /meshes");
 
   for (int i = 0; i < 100'000; ++i) scene["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 2}}}});
-  const Measured many = render(write("many.gltf", scene.dump()));
+  const MeasuredResult many = render(write("many.gltf", scene.dump()));
   EXPECT_EQ(many.exit_code, 2) << many.output;
   EXPECT_LT(many.peak_mib, kBaseMiB);
 
@@ -178,7 +156,7 @@ TEST_F(ImportMemory, accessors_without_data_are_refused_before_columns_are_made)
       {"type", "VEC3"},
       {"sparse",
        {{"count", 1}, {"indices", {{"bufferView", 1}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}}}};
-  const Measured sparse = render(write("sparse.gltf", scene.dump()));
+  const MeasuredResult sparse = render(write("sparse.gltf", scene.dump()));
   EXPECT_EQ(sparse.exit_code, 2) << sparse.output;
   EXPECT_EQ(std::count(sparse.output.begin(), sparse.output.end(), '\n'), 1) << sparse.output;
 }
@@ -197,16 +175,17 @@ TEST_F(ImportMemory, a_cache_is_held_to_it_and_names_the_file) {
   write("b.png", black_png(2048, 2040, 1));
   const std::string scene = write("two.gltf", scene_of({"a.png", "b.png"}).dump()), journal = at("j.json");
   write("j.json", R"({"relook": "journal/1", "steps": []})");
-  ASSERT_EQ(measured({"preprocess", scene, "-o", at("c"), "--quiet", "--camera", "auto", "--lights", "auto",
-                      "--resolution", "16x9"})
+  ASSERT_EQ(measure_relook({"preprocess", scene, "-o", at("c"), "--quiet", "--camera", "auto", "--lights", "auto",
+                            "--resolution", "16x9"})
                 .exit_code,
             0);
   const auto replay = [&](const std::string& size) {
-    return measured({"replay", at("c"), journal, "-o", at("run"), "--quiet", "--overwrite", "--import-memory", size});
+    return measure_relook(
+        {"replay", at("c"), journal, "-o", at("run"), "--quiet", "--overwrite", "--import-memory", size});
   };
   EXPECT_EQ(replay("44M").exit_code, 0);
   expect_refused(replay("42M"), "textures-");
-  expect_refused(measured({"check", at("c"), "--import-memory", "42M"}), "textures-");
+  expect_refused(measure_relook({"check", at("c"), "--import-memory", "42M"}), "textures-");
 }
 
 const CacheIdentity kIdentity{std::string(32, 'a'), std::string(32, 'b')};

@@ -15,21 +15,6 @@ namespace {
 const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
 constexpr double kAbove = 1.05;  // what a peak may be of its limit
 
-/// Python starts the program, since what this process holds would count as the child's.
-constexpr const char* kMeasure = R"(
-import os, subprocess, sys
-child = subprocess.Popen(sys.argv[1:], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-output = child.stdout.read().decode()
-_, status, usage = os.wait4(child.pid, 0)
-print(os.waitstatus_to_exitcode(status), usage.ru_maxrss, output)
-)";
-
-struct Measured {
-  int exit_code = -1;
-  double peak_megabytes = 0;
-  std::string output;
-};
-
 class MemoryLimit : public testing::Test {
  protected:
   void SetUp() override {
@@ -51,22 +36,11 @@ class MemoryLimit : public testing::Test {
                                 "value": [0.9, 0.1, 0.1, 1]}]}]})";
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  [[nodiscard]] Measured replay(std::vector<std::string> options) const {
-    std::vector<std::string> command{"python3",    "-c", kMeasure,  RELOOK_PROGRAM, "replay",  at("c"),
-                                     at("j.json"), "-o", at("run"), "--quiet",      "--fresh", "--overwrite",
-                                     "--threads",  "2"};
+  [[nodiscard]] MeasuredResult replay(std::vector<std::string> options) const {
+    std::vector<std::string> command{"replay",  at("c"),   at("j.json"),  "-o",        at("run"),
+                                     "--quiet", "--fresh", "--overwrite", "--threads", "2"};
     command.insert(command.end(), options.begin(), options.end());
-    const ProgramResult result = run_program(command);
-    Measured measured;
-    const std::size_t code_end = result.output.find(' '), peak_end = result.output.find(' ', code_end + 1);
-    if (result.exit_code != 0 || peak_end == std::string::npos) {
-      ADD_FAILURE() << result.output;
-      return measured;
-    }
-    measured.exit_code = std::stoi(result.output);
-    measured.peak_megabytes = std::stod(result.output.substr(code_end)) / 1024;
-    measured.output = result.output.substr(peak_end);
-    return measured;
+    return measure_relook(std::move(command));
   }
   [[nodiscard]] static std::vector<std::string> limited(std::vector<std::string> options, double megabytes) {
     options.insert(options.end(), {"--memory", std::to_string(static_cast<int>(megabytes)) + "M"});
@@ -74,28 +48,28 @@ class MemoryLimit : public testing::Test {
   }
 
   void expect_within(const std::vector<std::string>& options, double megabytes, bool may_be_refused) const {
-    const Measured run = replay(limited(options, megabytes));
+    const MeasuredResult run = replay(limited(options, megabytes));
     if (may_be_refused && run.exit_code == 4) return;
     EXPECT_EQ(run.exit_code, 0) << megabytes << ": " << run.output;
-    EXPECT_LE(run.peak_megabytes, kAbove * megabytes) << run.output;
+    EXPECT_LE(run.peak_mib, kAbove * megabytes) << run.output;
   }
 
   /// At the floor that a refusal names, somewhat below and above it.
   void expect_limits_kept(const std::vector<std::string>& options) const {
-    const Measured free = replay(options);
+    const MeasuredResult free = replay(options);
     ASSERT_EQ(free.exit_code, 0) << free.output;
-    const Measured refused = replay(limited(options, 1));
+    const MeasuredResult refused = replay(limited(options, 1));
     ASSERT_EQ(refused.exit_code, 4) << refused.output;
     const std::string words = "needs at least ";
     const std::size_t named = refused.output.find(words);
     ASSERT_NE(named, std::string::npos) << refused.output;
     const double floor = std::stod(refused.output.substr(named + words.size()));
-    const Measured at_floor = replay(limited(options, floor));
+    const MeasuredResult at_floor = replay(limited(options, floor));
     EXPECT_EQ(at_floor.exit_code, 0) << floor << ": " << at_floor.output;
-    EXPECT_LE(at_floor.peak_megabytes, kAbove * floor);
-    EXPECT_GE(at_floor.peak_megabytes, 0.85 * floor) << "less would do";
+    EXPECT_LE(at_floor.peak_mib, kAbove * floor);
+    EXPECT_GE(at_floor.peak_mib, 0.85 * floor) << "less would do";
     expect_within(options, 0.9 * floor, true);
-    expect_within(options, floor + 0.3 * std::max(0.0, free.peak_megabytes - floor), false);
+    expect_within(options, floor + 0.3 * std::max(0.0, free.peak_mib - floor), false);
   }
 
   ScratchFolder folder_{"memory_limit"};

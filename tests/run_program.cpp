@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 #include "base/files.h"
 
@@ -29,6 +30,17 @@ std::string text_file(const std::filesystem::path& path) {
   execvp(arguments[0], arguments.data());
   _exit(127);
 }
+
+/// Python starts the program, since what this process holds would count as the child's.
+constexpr const char* kMeasure = R"(
+import os, subprocess, sys, time
+start = time.monotonic()
+child = subprocess.Popen(sys.argv[1:], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+output = child.stdout.read().decode()
+_, status, usage = os.wait4(child.pid, 0)
+print(os.waitstatus_to_exitcode(status), usage.ru_maxrss, time.monotonic() - start)
+print(output, end="")
+)";
 
 }  // namespace
 
@@ -58,6 +70,23 @@ ProgramResult run_program(const std::vector<std::string>& command) {
   result.output = text_file(name);
   std::filesystem::remove(name);
   return result;
+}
+
+MeasuredResult measure_relook(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {"python3", "-c", kMeasure, RELOOK_PROGRAM});
+  const ProgramResult result = run_program(arguments);
+  std::istringstream output(result.output);
+  MeasuredResult measured;
+  double kibibytes = 0;
+  std::string rest_of_line;
+  if (result.exit_code != 0 || !(output >> measured.exit_code >> kibibytes >> measured.seconds)) {
+    ADD_FAILURE() << result.output;
+    return measured;
+  }
+  measured.peak_mib = kibibytes / 1024;
+  std::getline(output, rest_of_line);
+  measured.output = {std::istreambuf_iterator<char>(output), std::istreambuf_iterator<char>()};
+  return measured;
 }
 
 pid_t start_relook(std::vector<std::string> arguments) {

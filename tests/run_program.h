@@ -31,6 +31,15 @@ struct ProgramResult {
 /// Runs `command[0]` (searched for in PATH) without standard input and waits for it.
 [[nodiscard]] ProgramResult run_program(const std::vector<std::string>& command);
 
+struct MeasuredResult {
+  int exit_code = -1;
+  double peak_mib = 0;  // of the program's resident set, as the operating system saw it
+  double seconds = 0;
+  std::string output;  // stdout and stderr
+};
+/// Runs relook and measures it. A gtest failure when that cannot be.
+[[nodiscard]] MeasuredResult measure_relook(std::vector<std::string> arguments);
+
 /// Starts the program without waiting; its output is not caught.
 [[nodiscard]] pid_t start_relook(std::vector<std::string> arguments);
 /// Its exit code; 128 + signal when it was killed.

@@ -40,7 +40,8 @@ class CompressedLanes {
       for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = colors_.nodes[slots[lane]][channel];
       return;
     }
-    const auto links = std::ranges::find(batch_.tints, which, &std::pair<std::uint32_t, std::vector<LightLink>>::first);
+    const auto links =
+        std::ranges::lower_bound(batch_.tints, which, {}, &std::pair<std::uint32_t, std::vector<LightLink>>::first);
     for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = tint(links->second[first + lane], channel, colors_);
   }
 
@@ -120,8 +121,11 @@ void Baked::add(MaterialId material, const Dependencies& read) {
     known->second |= read.material;
   else
     materials_.emplace_back(material, read.material);
-  for (const LightId light : read.lights)
-    if (std::ranges::find(lights_, light) == lights_.end()) lights_.push_back(light);
+  if (!std::ranges::includes(lights_, read.lights)) {
+    std::vector<LightId> both;
+    std::ranges::set_union(lights_, read.lights, std::back_inserter(both));
+    lights_ = std::move(both);
+  }
   ambient_ = ambient_ || read.ambient;
   environment_ = environment_ || read.environment;
 }

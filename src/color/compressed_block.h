@@ -42,9 +42,10 @@ struct CompressedBatch {
   const SplitProgram* program = nullptr;
   MaterialId material;
   bool are_filters = false;
-  std::vector<std::uint32_t> out;                                       // [lanes] slots for the results
-  std::array<std::vector<std::uint32_t>, kBranches> child;              // [lanes] slots of changing children
-  std::vector<std::pair<std::uint32_t, std::vector<LightLink>>> tints;  // by place of a changing light: [lanes] filters
+  std::vector<std::uint32_t> out;                           // [lanes] slots for the results
+  std::array<std::vector<std::uint32_t>, kBranches> child;  // [lanes] slots of changing children
+  std::vector<std::pair<std::uint32_t, std::vector<LightLink>>>
+      tints;  // by place of a changing light, in order: [lanes] filters
   std::vector<Stored> columns;
   std::vector<Vector> values;  // one column after the other, rounded up to whole vectors
 
@@ -55,6 +56,7 @@ struct CompressedBatch {
 /// What evaluated columns depend on: they hold while none of it changes.
 class Baked {
  public:
+  /// Requires: of its lights each once, in order.
   void add(MaterialId material, const Dependencies& read);
   [[nodiscard]] bool depends_on(const ParameterSet& changed) const;
   /// Is the material met at all, so that another structure of it would ask for other programs?
@@ -62,7 +64,7 @@ class Baked {
 
  private:
   std::vector<std::pair<MaterialId, FieldMask>> materials_;
-  std::vector<LightId> lights_;
+  std::vector<LightId> lights_;  // in order
   bool ambient_ = false, environment_ = false;
 };
 

@@ -8,8 +8,8 @@
 namespace relook {
 
 struct ParameterSet {
-  std::vector<std::pair<MaterialId, FieldMask>> materials;  // each once
-  std::vector<LightId> lights;                              // their colour parameters
+  std::vector<std::pair<MaterialId, FieldMask>> materials;  // each once, in the order of their ids
+  std::vector<LightId> lights;                              // their colour parameters, each once, in order
   bool ambient = false, environment = false;
 
   [[nodiscard]] bool empty() const { return materials.empty() && lights.empty() && !ambient && !environment; }

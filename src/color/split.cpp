@@ -14,6 +14,10 @@ class Splitter {
  public:
   Splitter(const ColorProgram& program, const ChangingLeaves& leaves)
       : program_(program), code_(program.code), leaves_(leaves), uniform_(find_uniform(code_)) {
+    for (const LightId light : leaves.lights) {
+      if (light.index() >= changing_lights_.size()) changing_lights_.resize(light.index() + std::size_t{1});
+      changing_lights_[light.index()] = true;
+    }
     changing_.resize(code_.size());
     for (Value v = 0; v < code_.size(); ++v) changing_[v] = is_changing(v);
   }
@@ -43,8 +47,8 @@ class Splitter {
       case Op::slot_color:
         return (leaves_.fields & color_mask_of(slot)) != 0;
       case Op::light_field:
-        return is_color(static_cast<LightField>(i.payload & 0xFFU)) &&
-               std::ranges::find(leaves_.lights, LightId(i.payload >> 8)) != leaves_.lights.end();
+        return is_color(static_cast<LightField>(i.payload & 0xFFU)) && i.payload >> 8 < changing_lights_.size() &&
+               changing_lights_[i.payload >> 8];
       case Op::ambient:
         return leaves_.ambient;
       case Op::environment:
@@ -127,6 +131,7 @@ class Splitter {
     return make_kernel(code, {program_.result.begin(), program_.result.end()});
   }
 
+  /// Its lights each once, in order.
   Dependencies read_by(const std::vector<Value>& values) const {
     std::vector<bool> needed(code_.size());
     for (Value value : values) needed[value] = true;
@@ -136,6 +141,8 @@ class Splitter {
       for (unsigned k = 0; k < operand_count(code_[v].op); ++k) needed[code_[v].operands[k]] = true;
       note(code_[v], read);
     }
+    std::ranges::sort(read.lights);
+    read.lights.erase(std::ranges::unique(read.lights).begin(), read.lights.end());
     return read;
   }
   static void note(const Instruction& i, Dependencies& read) {
@@ -159,8 +166,7 @@ class Splitter {
         break;
       case Op::light_field:  // placement never changes while columns are kept
         if (!is_color(static_cast<LightField>(i.payload & 0xFFU))) break;
-        if (const LightId light(i.payload >> 8); std::ranges::find(read.lights, light) == read.lights.end())
-          read.lights.push_back(light);
+        read.lights.emplace_back(i.payload >> 8);
         break;
       case Op::ambient:
         read.ambient = true;
@@ -178,6 +184,7 @@ class Splitter {
   const Code& code_;
   const ChangingLeaves& leaves_;
   std::vector<bool> uniform_, changing_, is_column_, visited_;
+  std::vector<bool> changing_lights_;  // by id
 };
 
 }  // namespace

@@ -18,17 +18,20 @@ std::vector<std::string> children_of(const Json* node) {
   return names;
 }
 
+bool has_child(const Json* node, const std::string& name) {
+  if (node == nullptr || !node->is_object() || !node->contains("children")) return false;
+  const Json& children = (*node)["children"];
+  return children.is_array() && std::find(children.begin(), children.end(), name) != children.end();
+}
+
 }  // namespace
 
 /// The parent in the document as edited so far: the compiled one, or a node that this edit touched.
 std::string Transaction::current_parent(const std::string& node) {
-  std::vector<std::string> candidates{state_.parent_of(node)};
-  for (auto at = touched_.lower_bound({"nodes", ""}); at != touched_.end() && at->section == "nodes"; ++at)
-    candidates.push_back(at->name);
-  for (const std::string& candidate : candidates) {
-    const std::vector<std::string> children = children_of(find({"nodes", candidate}));
-    if (!candidate.empty() && std::find(children.begin(), children.end(), node) != children.end()) return candidate;
-  }
+  const std::string compiled = state_.parent_of(node);
+  if (!compiled.empty() && has_child(find({"nodes", compiled}), node)) return compiled;
+  for (const std::string& candidate : touched_nodes_)
+    if (has_child(find({"nodes", candidate}), node)) return candidate;
   return "";
 }
 
@@ -54,6 +57,7 @@ void Transaction::remove_node(const std::string& name) {
     for (std::string& child : children_of(find({"nodes", node}))) todo.push_back(std::move(child));
     touch(TouchedEntity{"nodes", node});
     document().look["nodes"].erase(node);
+    touched_nodes_.erase(node);
   }
 }
 

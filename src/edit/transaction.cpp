@@ -53,6 +53,7 @@ Transaction::Transaction(SceneState& state, std::string_view file, std::filesyst
 SceneDelta Transaction::apply(const Edit& edit) {
   std::vector<Resolved> done;
   touched_earlier_.merge(std::exchange(touched_, {}));
+  touched_nodes_.clear();
   grown_.clear();
   try {
     for (const PatchOperation& operation : edit) {
@@ -81,6 +82,7 @@ void Transaction::undo() {
 void Transaction::give_up() {
   restore_document();
   touched_.clear();
+  touched_nodes_.clear();
 }
 
 void Transaction::absorb(Transaction&& later) {
@@ -232,7 +234,7 @@ void Transaction::touch(const TouchedEntity& entity) {
   if (entity.section.empty() || (section_of(entity.section) && entity.name.empty()))
     note_section(entity.section);
   else
-    touched_.insert(entity);
+    note(entity);
   if (!saved_.insert(entity).second) return;
   const Json* value = find(entity);
   before_.emplace_back(entity, value == nullptr ? std::nullopt : std::optional<Json>(*value));
@@ -251,10 +253,15 @@ void Transaction::note_section(const std::string& section) {
   for (const auto& item : look.items()) {
     if (!section.empty() && item.key() != section) continue;
     if (!section_of(item.key()))
-      touched_.insert({item.key(), ""});
+      note({item.key(), ""});
     else if (item.value().is_object())
-      for (const auto& entity : item.value().items()) touched_.insert({item.key(), entity.key()});
+      for (const auto& entity : item.value().items()) note({item.key(), entity.key()});
   }
+}
+
+void Transaction::note(const TouchedEntity& entity) {
+  touched_.insert(entity);
+  if (entity.section == "nodes") touched_nodes_.insert(entity.name);
 }
 
 void Transaction::normalize(const Resolved& resolved) {

@@ -52,6 +52,7 @@ class Transaction {
   void touch(const Tokens& tokens);
   void touch(const TouchedEntity& entity);
   void note_section(const std::string& section);
+  void note(const TouchedEntity& entity);
   void normalize(const Resolved& resolved);
   void normalize_entity(const TouchedEntity& entity, const Resolved& resolved);
   void restore_document();
@@ -82,6 +83,7 @@ class Transaction {
   std::filesystem::path folder_;
 
   std::set<TouchedEntity> touched_;          // by the present edit
+  std::set<std::string> touched_nodes_;      // of these the nodes that it has not removed since
   std::set<TouchedEntity> touched_earlier_;  // by those before it in this transaction
   std::set<TouchedEntity> saved_;
   std::vector<std::pair<TouchedEntity, std::optional<Json>>> before_;  // in the order of touching

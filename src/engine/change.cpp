@@ -1,6 +1,7 @@
 #include "engine/change.h"
 
 #include <algorithm>
+#include <unordered_map>
 
 #include "trace/box_range.h"
 
@@ -86,12 +87,15 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
     if (!same_placement(light.before, after)) moved.push_back(light.id);
     if (!same_color(light.before, after)) change.colors.parameters.lights.push_back(light.id);
   }
+  std::ranges::sort(change.colors.parameters.lights);
   change.rays.old_lights = old_lights;
   change.rays.lights_changed = scene.light_order != old_lights || !moved.empty();
-  for (LightId light : scene.light_order) {
-    const auto old = std::ranges::find(old_lights, light);
-    const bool is_kept = old != old_lights.end() && std::ranges::find(moved, light) == moved.end();
-    change.rays.old_light_index.push_back(is_kept ? static_cast<std::uint32_t>(old - old_lights.begin()) : kNoNode);
+  std::unordered_map<LightId, std::uint32_t> kept;  // by place in the old order
+  for (std::uint32_t i = 0; i < old_lights.size(); ++i) kept.emplace(old_lights[i], i);
+  for (const LightId light : moved) kept.erase(light);
+  for (const LightId light : scene.light_order) {
+    const auto old = kept.find(light);
+    change.rays.old_light_index.push_back(old != kept.end() ? old->second : kNoNode);
   }
 }
 
@@ -107,6 +111,7 @@ StepChange find_change(const RayScene& ray_scene, const Scene& scene, const Scen
     if (fields != 0) change.colors.parameters.materials.emplace_back(material.id, fields);
     if (structure_of(material.before) != structure_of(after)) change.colors.restructured.push_back(material.id);
   }
+  std::ranges::sort(change.colors.parameters.materials);
   // Objects that have another material now follow below.
   for (const auto& material : delta.materials)
     if (material.id.index() < ray_scene.material_count())

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -61,6 +62,8 @@ class FrameEncoder {
 /// Whether a file is a frame as this program writes them: these attributes and no others, so that what a painting or
 /// compositing program has saved under the name of a frame is told apart.
 [[nodiscard]] bool is_own_frame(const std::filesystem::path& path);
+/// What such a file's header says of its origin; none if it is no frame of this program.
+[[nodiscard]] std::optional<FrameMeta> own_frame_meta(const std::filesystem::path& path);
 
 /// Reads R, G, B and A (1 if missing) of any OpenEXR image, flat, half or float. Throws InputError.
 [[nodiscard]] Frame decode_exr(const std::filesystem::path& path);

@@ -36,12 +36,13 @@ LayerTile::LayerTile(const LayerScene& scene, ProgramTable& programs)
       columns_(scene.layers.channels.size()) {}
 
 const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame, const TileMask* changed) {
-  const std::uint32_t samples = s_.view.samples,
-                      chunk = std::max(1U, chunk_samples(s_.grow.layout().lights) / samples);  // whole pixels
+  const std::uint32_t samples = s_.view.samples;
+  ChunkSize chunk(s_.grow.layout().lights);
   for (std::vector<float>& column : columns_) column.assign(rect.pixels(), 0.0F);
-  for (std::uint32_t first = 0; first < rect.pixels(); first += chunk) {
-    const std::uint32_t last = std::min(first + chunk, rect.pixels());
+  for (std::uint32_t first = 0, last = 0; first < rect.pixels(); first = last) {
+    last = std::min(first + std::max(1U, chunk.samples() / samples), rect.pixels());
     trace(rect, first, last);
+    chunk.learn(block_, (last - first) * samples);
     for (std::uint32_t pixel = first; pixel < last; ++pixel) {
       const std::uint32_t sample = (pixel - first) * samples;
       set_parts(pixel, sample);

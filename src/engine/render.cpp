@@ -43,11 +43,12 @@ class TileRenderer {
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
   void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
-    const std::uint32_t samples = sample_count(rect, view_), chunk = chunk_samples(grow_.layout().lights);
+    const std::uint32_t samples = sample_count(rect, view_);
+    ChunkSize chunk(grow_.layout().lights);
     colors.resize(samples);
     if (record != nullptr) record->trees.first_hit.push_back(0);
-    for (std::uint32_t first = 0; first < samples; first += chunk) {
-      const std::uint32_t last = std::min(first + chunk, samples);
+    for (std::uint32_t first = 0, last = 0; first < samples; first = last) {
+      last = std::min(first + chunk.samples(), samples);
       block_.clear();
       roots_.clear();
       rays_.clear();
@@ -55,6 +56,7 @@ class TileRenderer {
       trace_trees(grow_, rays_, first, block_, roots_, counters);
       shader_.shade(block_, roots_, std::span(colors).subspan(first, last - first));
       if (record != nullptr) keep(*record, rect.x1 - rect.x0);
+      chunk.learn(block_, last - first);
     }
   }
 

@@ -150,6 +150,12 @@ ChangeClass combined(ChangeClass a, ChangeClass b) {
   return std::max(a, b);
 }
 
+ChangeClass change_class_of(std::string_view name) {
+  for (const ChangeClass change : {ChangeClass::optical, ChangeClass::geometric, ChangeClass::mixed})
+    if (change_class_name(change) == name) return change;
+  return ChangeClass::color;
+}
+
 std::uint64_t peak_rss_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -116,6 +116,9 @@ struct RunReport {
 /// The class of several edits together, by the rule of classify(): that of a drag's release.
 [[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
 
+/// The class of this name; colour for any other.
+[[nodiscard]] ChangeClass change_class_of(std::string_view name);
+
 /// Largest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_rss_bytes();
 

@@ -14,12 +14,37 @@ namespace relook {
 [[nodiscard]] inline std::uint32_t sample_count(const TileRect& rect, const ViewOptions& view) {
   return rect.pixels() * view.samples;
 }
-/// Trees are shaded in chunks of about so many samples, so that a chunk's nodes stay in the processor's cache: fewer
-/// where a node has many lights.
-[[nodiscard]] inline std::uint32_t chunk_samples(std::size_t lights) {
-  constexpr std::size_t kMostSamples = 2048, kMostLinks = std::size_t{1} << 20;
-  return static_cast<std::uint32_t>(std::clamp<std::size_t>(kMostLinks / (lights + 1), 1, kMostSamples));
-}
+/// Trees are shaded in chunks of samples whose nodes stay in the processor's cache, and whose memory is bounded where a
+/// sample has thousands of lights behind glass: 2048, or about as many as fit into some megabytes.
+class ChunkSize {
+ public:
+  explicit ChunkSize(std::size_t lights)
+      : samples_(static_cast<std::uint32_t>(std::clamp<std::size_t>(kFirstLinks / (lights + 1), 1, kMostSamples))) {}
+
+  /// How many samples to take next.
+  [[nodiscard]] std::uint32_t samples() const { return samples_; }
+  /// The next chunk follows from what the last one, of `samples` samples, has taken.
+  void learn(const TreeBlock& block, std::uint32_t samples) {
+    const std::size_t fitting = std::size_t{samples} * kMostBytes / std::max<std::size_t>(1, bytes_of_chunk(block));
+    const std::size_t most = std::min<std::size_t>(std::size_t{kMostGrowth} * samples_, kMostSamples);
+    samples_ = static_cast<std::uint32_t>(std::clamp<std::size_t>(fitting, 1, most));
+  }
+  /// Of trees that are gathered one by one.
+  [[nodiscard]] static bool is_full(const TreeBlock& block, std::size_t samples) {
+    return samples >= kMostSamples || bytes_of_chunk(block) >= kMostBytes;
+  }
+
+ private:
+  static constexpr std::uint32_t kMostSamples = 2048, kMostGrowth = 4;
+  static constexpr std::size_t kFirstLinks = std::size_t{1} << 14, kMostBytes = std::size_t{16} << 20;
+
+  [[nodiscard]] static std::size_t bytes_of_chunk(const TreeBlock& block) {
+    return block.lights.size() * sizeof(LightLink) + block.filters.size() * sizeof(FilterNode);
+  }
+
+  std::uint32_t samples_;
+};
+
 /// Calls visit(sample, leaf) for the samples of some leaves of a tile, in increasing order.
 template <class Visit>
 void for_each_sample(const TileRect& rect, const ViewOptions& view, const Leaves& leaves, const Visit& visit) {

@@ -68,7 +68,7 @@ class TileUpdater {
     }
     roots_.push_back(root);
     result_.shaded.push_back(sample);
-    if (roots_.size() == chunk_samples(p_.grow.layout().lights)) flush();
+    if (ChunkSize::is_full(block_, roots_.size())) flush();
   }
 
   /// What to test of a sample's tree; null: nothing.

@@ -2,20 +2,28 @@
 
 #include <memory>
 
+#include "base/hash.h"
 #include "report/line_reader.h"
+#include "report/run_entry_check.h"
 
 namespace relook {
+
+std::string frame_line(const std::string& frame, const std::string& hash) {
+  return "    " + json_text(frame) + ": " + json_text(hash);
+}
+
 ReportFile::ReportFile(const std::filesystem::path& path, const Json& head) : path_(path), file_(path) {
   Json rest = head;
   rest.erase("relook");
   const std::string text = json_text(rest, 2);  // "{\n  ...\n}"
-  file_.append("{\n  \"relook\": " + json_text(head.at("relook")) + ",\n");
-  file_.append(std::string_view(text).substr(2, text.size() - 4));
-  file_.append(std::string(",\n").append(kStepsLine));
+  std::string start = "{\n  \"relook\": " + json_text(head.at("relook")) + ",\n";
+  start.append(text, 2, text.size() - 4).append(",\n");
+  file_.append(start + std::string(kSealLine) + hash128(bytes_of(start)) + "\",\n");
+  file_.append(kStepsLine);
 }
 
 void ReportFile::add(const Json& entry) {
-  const std::string text = json_text(entry);
+  const std::string text = sealed(json_text(entry));
   file_.append(lines_.empty() ? "\n" : ",\n");
   lines_.emplace_back(file_.size(), static_cast<std::uint32_t>(text.size()));
   file_.append(text);
@@ -25,10 +33,10 @@ void ReportFile::add(const Json& entry) {
 }
 
 void ReportFile::publish() {
-  file_.append(std::string("\n").append(kStepsEnd).append("\n  \"frames\": {"));
+  file_.append(std::string("\n").append(kStepsEnd).append("\n").append(kFramesLine));
   for (std::size_t i = 0; i < frames_.size(); ++i)
-    file_.append((i == 0 ? "\n    " : ",\n    ") + json_text(frames_[i].first) + ": " + json_text(frames_[i].second));
-  file_.append("\n  }\n}\n");
+    file_.append((i == 0 ? "\n" : ",\n") + frame_line(frames_[i].first, frames_[i].second));
+  file_.append(std::string("\n").append(kFramesEnd));
   file_.publish();
 }
 

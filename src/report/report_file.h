@@ -1,4 +1,5 @@
-// RUN/report.json, written and read an entry at a time: `relook` first, an entry of `steps` a line, `frames` last.
+// RUN/report.json, written and read an entry at a time: `relook` first, an entry of `steps` a line, `frames` last. A
+// `seal` in each entry and one before `steps`, over all bytes before it, tell what was changed since.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -16,6 +17,10 @@ namespace relook {
 inline constexpr std::string_view kReportName = "report.json";
 inline constexpr std::string_view kStepsLine = "  \"steps\": [";
 inline constexpr std::string_view kStepsEnd = "  ],";
+inline constexpr std::string_view kSealLine = "  \"seal\": \"";
+inline constexpr std::string_view kFramesLine = "  \"frames\": {", kFramesEnd = "  }\n}\n";
+/// A line of `frames` without what separates it from the next.
+[[nodiscard]] std::string frame_line(const std::string& frame, const std::string& hash);
 
 class ReportFile {
  public:

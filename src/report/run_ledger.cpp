@@ -8,6 +8,7 @@
 #include "report/own_file.h"
 #include "report/progress_file.h"
 #include "report/report_file.h"
+#include "report/run_entry_check.h"
 
 namespace relook {
 namespace {
@@ -15,28 +16,6 @@ namespace {
 bool is_file(const std::filesystem::path& path) {
   std::error_code error;
   return std::filesystem::is_regular_file(path, error);
-}
-
-/// Throws InputError unless an entry has what its readers rely on.
-void check_entry(const Json& entry) {
-  const JsonView view(entry, kReportName);
-  for (const char* key : {"name", "class", "frame", "frame_hash", "preview", "edits", "command"})
-    (void)view.at(key).text();
-  if (const JsonView verify = view.at("verify"); !verify.value().is_null())
-    (void)(verify.at("pixels_compared").integer(0, INT64_MAX) + verify.at("pixels_different").integer(0, INT64_MAX));
-  if (const JsonView percent = view.at("verify_percent"); !percent.value().is_null()) (void)percent.number(0, 100);
-  (void)view.at("overlays").boolean();
-  const JsonView files = view.at("files");
-  files.require_object();
-  for (const auto& file : files.value().items()) {
-    const JsonView stamp = files.at(file.key());
-    (void)stamp.at("hash").text();
-    (void)stamp.at("bytes").integer(0, INT64_MAX);
-    (void)stamp.at("modified").integer(INT64_MIN, INT64_MAX);
-  }
-  const std::string stem = std::filesystem::path(view.at("frame").text()).stem().string();
-  if (view.at("frame").text() != "frames/" + stem + ".exr" || view.at("preview").text() != "previews/" + stem + ".png")
-    view.at("frame").fail("not a frame of a run");
 }
 
 }  // namespace
@@ -62,9 +41,10 @@ void RunLedger::read_report() {
   is_run_ = has_foreign_report_ = true;
   report_ = std::make_unique<LineReader>(path);
   std::string head, line;
-  bool has_steps = false;
+  bool has_steps = false, has_seal = false;
   while (!has_steps && report_->next(line)) {
     has_steps = line == kStepsLine;
+    has_seal = has_seal || line == std::string(kSealLine) + hash128(bytes_of(head)) + "\",";
     head += line + "\n";
   }
   if (!has_steps) return;
@@ -72,13 +52,50 @@ void RunLedger::read_report() {
     head_ = parse_json(head + "]}", path.string());
     source_ = head_.value("source", Json());
     head_.erase("steps");
+    head_.erase("seal");
   } catch (const InputError&) {
     return;
   }
   has_foreign_report_ = source_.is_null();
-  while (report_->next(line) && line != kStepsEnd) take(line, *report_, 0, true);
+  if (!has_seal) head_ = nullptr;
+  has_whole_report_ = read_entries() && has_seal;
 }
 
+/// Whether all of them are as they were written, each once and in their order, and what follows names their frames.
+bool RunLedger::read_entries() {
+  const std::size_t refused = refused_;
+  std::optional<Taken> last;
+  std::uint64_t frames = 0;  // hash of the lines that name them
+  bool is_in_order = true;
+  std::string line;
+  while (report_->next(line) && line != kStepsEnd) {
+    const std::string_view text = std::string_view(line).substr(0, line.size() - (line.ends_with(',') ? 1 : 0));
+    std::optional<Taken> taken = has_sound_seal(text) ? take(text, *report_, 0, true) : std::nullopt;
+    if (!taken) {
+      ++refused_;
+      continue;
+    }
+    is_in_order = is_in_order && (!last || last->key < taken->key);
+    if (!last || last->frame != taken->frame) frames = hash64(bytes_of(frame_line(taken->frame, taken->hash)), frames);
+    last = std::move(taken);
+  }
+  return is_in_order && last && refused_ == refused && has_sound_end(frames);
+}
+
+/// Whether the lines that name the frames have this hash, and nothing comes after them.
+bool RunLedger::has_sound_end(std::uint64_t expected) {
+  std::uint64_t frames = 0;
+  std::string line, end;
+  if (!report_->next(line) || line != kFramesLine) return false;
+  while (report_->next(line) && line.starts_with("    ")) {
+    if (line.ends_with(',')) line.pop_back();
+    frames = hash64(bytes_of(line), frames);
+  }
+  for (end = line + "\n"; report_->next(line) && end.size() <= kFramesEnd.size();) end += line + "\n";
+  return frames == expected && end == kFramesEnd;
+}
+
+/// What was cut short, by a command that was killed as it wrote, is no surprise; other lines that make no sense are.
 void RunLedger::read_progress() {
   const std::filesystem::path path = run_ / kProgressName;
   if (!is_file(path) || !is_own_file(path, OwnKind::progress)) return;
@@ -86,11 +103,10 @@ void RunLedger::read_progress() {
   progress_ = std::make_unique<LineReader>(path);
   for (std::string line; progress_->next(line);) {
     const std::string_view text = progress_text(line);
-    if (text.empty()) continue;
-    if (text.starts_with(kProgressHead))
-      take_head(parse_json(text, path.string()));
-    else
-      take(text, *progress_, line.size() - text.size(), false);
+    const bool is_taken = text.starts_with(kProgressHead)
+                              ? take_head(text)
+                              : !text.empty() && take(text, *progress_, line.size() - text.size(), false);
+    if (!is_taken && line.ends_with('}')) ++refused_;
   }
 }
 
@@ -101,8 +117,9 @@ Json RunLedger::head_of(const Task& task, const Json& source) {
           {"steps_fresh", task.is_fresh}, {"steps_last", task.last_step}};
 }
 
-void RunLedger::take_head(const Json& head) {
+bool RunLedger::take_head(std::string_view text) {
   try {
+    const Json head = parse_json(text, kProgressName);
     const JsonView view(head, kProgressName);
     Task task;
     task.first_step = static_cast<std::uint32_t>(view.at("steps_first").integer(0, kWholeStep - 1));
@@ -111,12 +128,14 @@ void RunLedger::take_head(const Json& head) {
     task.is_fresh = view.at("steps_fresh").boolean();
     source_ = view.at("source").value();
     tasks_.push_back(std::move(task));
+    return true;
   } catch (const InputError&) {  // no head
+    return false;
   }
 }
 
-void RunLedger::take(std::string_view text, const LineReader& file, std::size_t skipped, bool is_in_report) {
-  if (text.ends_with(',')) text.remove_suffix(1);
+std::optional<RunLedger::Taken> RunLedger::take(std::string_view text, const LineReader& file, std::size_t skipped,
+                                                bool is_in_report) {
   try {
     const Json entry = parse_json(text, kReportName);
     check_entry(entry);
@@ -127,7 +146,9 @@ void RunLedger::take(std::string_view text, const LineReader& file, std::size_t 
     Note note{entry["edits"].get<std::string>(), is_in_report, is_fresh && !is_in_report, file.offset() + skipped,
               text.size()};
     notes_.insert_or_assign(key, std::move(note));
+    return Taken{key, entry["frame"].get<std::string>(), entry["frame_hash"].get<std::string>()};
   } catch (const InputError&) {  // no entry
+    return std::nullopt;
   }
 }
 
@@ -137,7 +158,9 @@ const RunLedger::Note* RunLedger::find(const LedgerKey& key) const {
 }
 
 Json RunLedger::entry(const Note& note) const {
-  return parse_json((note.is_in_report ? report_ : progress_)->read_at(note.offset, note.bytes), kReportName);
+  Json entry = parse_json((note.is_in_report ? report_ : progress_)->read_at(note.offset, note.bytes), kReportName);
+  entry.erase("seal");
+  return entry;
 }
 
 }  // namespace relook

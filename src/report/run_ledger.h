@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,13 +39,13 @@ class RunLedger {
   };
   [[nodiscard]] static Json head_of(const Task& task, const Json& source);
 
-  /// Reads what is there; lines that are cut short or make no sense count as none. Throws InputError when report.json
-  /// or progress.jsonl cannot be read.
+  /// Reads what is there; lines that are cut short, were changed since or make no sense count as none. Throws
+  /// InputError when report.json or progress.jsonl cannot be read.
   explicit RunLedger(std::filesystem::path run);
 
   /// Whether the folder has a report or notes that relook has written.
   [[nodiscard]] bool is_run() const { return is_run_; }
-  /// report.json without its steps; null when there is none that can be gone on with.
+  /// report.json without its steps; null when there is none that can be gone on with, or its head was changed since.
   [[nodiscard]] const Json& head() const { return head_; }
   /// What all its frames have in common (run_source.h); null when that is not known, as of a run of another version.
   [[nodiscard]] const Json& source() const { return source_; }
@@ -53,6 +54,10 @@ class RunLedger {
   [[nodiscard]] const std::vector<Task>& tasks() const { return tasks_; }
   /// Whether report.json is of relook, but not laid out as this version does it.
   [[nodiscard]] bool has_foreign_report() const { return has_foreign_report_; }
+  /// Whether report.json, if there is one, is as it was written.
+  [[nodiscard]] bool has_whole_report() const { return has_whole_report_; }
+  /// Lines that should be entries and are not as they were written.
+  [[nodiscard]] std::size_t refused() const { return refused_; }
   [[nodiscard]] const Note* find(const LedgerKey& key) const;
   /// Throws InputError.
   [[nodiscard]] Json entry(const Note& note) const;
@@ -60,11 +65,19 @@ class RunLedger {
  private:
   void read_report();
   void read_progress();
-  void take_head(const Json& head);
-  void take(std::string_view text, const LineReader& file, std::size_t skipped, bool is_in_report);
+  [[nodiscard]] bool read_entries();
+  [[nodiscard]] bool has_sound_end(std::uint64_t expected);
+  [[nodiscard]] bool take_head(std::string_view text);
+  struct Taken {
+    LedgerKey key;
+    std::string frame, hash;
+  };
+  /// None: it is no entry.
+  std::optional<Taken> take(std::string_view text, const LineReader& file, std::size_t skipped, bool is_in_report);
 
   std::filesystem::path run_;
-  bool is_run_ = false, has_foreign_report_ = false;
+  bool is_run_ = false, has_foreign_report_ = false, has_whole_report_ = true;
+  std::size_t refused_ = 0;
   Json head_, source_;
   std::vector<Task> tasks_;
   std::map<LedgerKey, Note> notes_;

@@ -1,0 +1,41 @@
+#!/bin/sh
+# Builds relook and its tests with a sanitizer and runs every test: sh tests/sanitize.sh address|thread [CTEST OPTION...]
+# address: AddressSanitizer and UndefinedBehaviorSanitizer (build/asan); thread: ThreadSanitizer (build/tsan).
+# Any report is a failure: of a test, or, where a test expects its program to fail, of this script.
+set -eu
+cd "$(dirname "$0")/.."
+case "${1:-}" in
+  address) preset=asan ;;
+  thread) preset=tsan ;;
+  *)
+    echo "usage: sh tests/sanitize.sh address|thread [CTEST OPTION...]" >&2
+    exit 2
+    ;;
+esac
+shift
+. scenes/setup.sh
+packages="$packages chromium chromium-driver"
+[ "$preset" != asan ] || packages="$packages clang-16 libclang-rt-16-dev llvm-16"
+install_packages
+build_preset "$preset" relook relook_tests
+
+reports="$PWD/build/$preset/sanitizer-reports"
+rm -rf "$reports"
+mkdir -p "$reports"
+# Each process writes a file of its own, so that nothing is lost in what a test catches.
+export ASAN_OPTIONS="log_path=$reports/asan:detect_leaks=1:allocator_may_return_null=1:detect_odr_violation=1"
+export LSAN_OPTIONS="suppressions=$PWD/tests/leaks.supp:print_suppressions=0"
+export UBSAN_OPTIONS="log_path=$reports/ubsan:print_stacktrace=1:halt_on_error=1"
+export TSAN_OPTIONS="log_path=$reports/tsan:suppressions=$PWD/tests/threads.supp:ignore_noninstrumented_modules=0:halt_on_error=0:exitcode=66:second_deadlock_stack=1"
+# ThreadSanitizer of these compilers finds no room for its shadow where the system spreads addresses widely.
+result=0
+setarch "$(uname -m)" -R ctest --test-dir "build/$preset" -j "$(nproc)" --output-on-failure --timeout 3600 --progress "$@" ||
+  result=1
+found=$(find "$reports" -type f | wc -l)
+if [ "$found" != 0 ]; then
+  echo "$found sanitizer reports in $reports; the first:" >&2
+  head -40 "$(find "$reports" -type f | sort | head -1)" >&2
+  result=1
+fi
+[ "$result" != 0 ] || echo "All tests passed, no report."
+exit "$result"
