@@ -1,0 +1,9 @@
+#include "places.h"
+
+namespace relook::places {
+
+const char* const kSourceFolder = RELOOK_PLACE_OF_SOURCES;
+const char* const kProgram = RELOOK_PLACE_OF_PROGRAM;
+const char* const kFaultShim = RELOOK_PLACE_OF_FAULT_SHIM;
+
+}  // namespace relook::places
