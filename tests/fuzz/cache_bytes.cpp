@@ -79,6 +79,7 @@ void change_values(CacheBytes::Section& section, Choices& choices) {
     case 6: {  // values from elsewhere
       const std::size_t from = raw.empty() ? 0 : static_cast<std::size_t>(choices.number(2)) % raw.size() / 4 * 4;
       const std::size_t bytes = std::min({std::size_t{16}, raw.size() - from, raw.size() - word});
+      if (bytes == 0) return;
       std::memmove(raw.data() + word, raw.data() + from, bytes);
       return;
     }

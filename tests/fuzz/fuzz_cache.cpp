@@ -1,5 +1,7 @@
 // Caches whose content is anything and whose hashes are right: opened, checked, and two edits replayed.
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 
 #include "cache_bytes.h"
 #include "engine/cached_image.h"
@@ -80,6 +82,7 @@ void open(const fs::path& cache, bool mends) {
   is_answered({ExitCode::out_of_resources}, [&] {
     OpenedCache opened;
     const CacheAnswer answer = open_cache(cache, mends, opened);
+    if (std::getenv("RELOOK_FUZZ_SAYS") != nullptr) std::fprintf(stderr, "answer: %s\n", explanation(answer).c_str());
     expect(answer.fault != CacheFault::missing && answer.fault != CacheFault::unreadable, "the cache is there");
     if (answer.fault == CacheFault::none) replay(std::move(opened), cache);
   });

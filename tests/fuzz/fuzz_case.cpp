@@ -50,6 +50,7 @@ bool is_answered(std::initializer_list<ExitCode> codes, const std::function<void
     const bool has_lines = dynamic_cast<const InputErrors*>(&error) != nullptr;
     if (std::ranges::find(codes, error.code()) == codes.end() || (!has_lines && !is_one_line(error.what())))
       give_up("exit " + std::to_string(static_cast<int>(error.code())) + ": " + error.what());
+    if (std::getenv("RELOOK_FUZZ_SAYS") != nullptr) std::fprintf(stderr, "answer: %s\n", error.what());
   } catch (const std::exception& error) {
     give_up(std::string("not an Error: ") + error.what());
   }

@@ -19,7 +19,7 @@ inline constexpr std::uint64_t kFuzzImportMemory = std::uint64_t{64} << 20;  // 
 void begin_fuzz_case();
 
 /// Runs `work`. True: it came to its end; false: it threw an Error of one of the codes, in one printable line (of
-/// InputErrors a few). Anything else ends the process.
+/// InputErrors a few); RELOOK_FUZZ_SAYS in the environment prints it. Anything else ends the process.
 bool is_answered(std::initializer_list<ExitCode> codes, const std::function<void()>& work);
 
 /// Ends the process with a sentence unless `condition`.

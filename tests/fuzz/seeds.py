@@ -348,7 +348,7 @@ def numbers(seed, sizes):
 
 def main(folder):
     targets = {"scene": scene_files(), "patch": patch_files(), "journal": journal_files(), "image": image_files(),
-               "notes": note_files(), "cache": numbers(1, range(4, 68, 4)), "replay": numbers(2, range(16, 272, 16))}
+               "notes": note_files(), "cache": numbers(1, range(3, 24)), "replay": numbers(2, range(16, 272, 16))}
     for target, files in targets.items():
         os.makedirs(os.path.join(folder, target), exist_ok=True)
         for i, data in enumerate(files):
