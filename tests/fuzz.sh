@@ -16,9 +16,12 @@ echo "Building the fuzz targets in build/asan (some minutes the first time)"
 cmake --preset asan --log-level=WARNING >/dev/null
 programs=""
 for target in $targets; do programs="$programs fuzz_$target"; done
-cmake --build --preset asan -j "$(nproc)" --target $programs
-
 work=build/fuzz
+mkdir -p "$work"
+cmake --build --preset asan -j "$(nproc)" --target $programs >"$work/build.log" 2>&1 || {
+  tail -40 "$work/build.log" >&2
+  exit 1
+}
 memory=$(mktemp -d /dev/shm/relook_fuzz.XXXXXX 2>/dev/null || mktemp -d)
 trap 'rm -rf "$memory"' EXIT
 trap 'exit 130' INT TERM

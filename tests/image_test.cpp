@@ -1,4 +1,5 @@
 // Image decoding and mip pyramids: values as stored in the file, damage refused, and exact box filters.
+#include "scene/exr_header.h"
 #include "scene/image.h"
 
 #include <ImfRgbaFile.h>
@@ -154,6 +155,29 @@ TEST(Image, jpeg_metadata_never_reaches_the_decoder) {
   const std::string segment = "\xFF\xED" + big_endian(static_cast<std::uint32_t>(iptc.size() + 2), 2) + iptc;
   EXPECT_EQ(text_of(jpeg_pixels(bytes_of(jpeg(segment))).bytes), jpeg());
   EXPECT_EQ(decoded(jpeg(segment))->texels8, decoded(jpeg())->texels8);
+}
+
+std::string little_endian(std::uint32_t value) { return {reinterpret_cast<const char*>(&value), sizeof value}; }
+
+/// The start of an OpenEXR file whose header has one attribute.
+std::string exr_start(const std::string& type, const std::string& value, std::uint32_t size) {
+  return little_endian(20000630) + little_endian(2) + "a" + std::string(1, '\0') + type + std::string(1, '\0') +
+         little_endian(size) + value + std::string(1, '\0');
+}
+std::string exr_fault(const std::string& type, const std::string& value, std::uint32_t size) {
+  return exr_header_fault(bytes_of(exr_start(type, value, size)));
+}
+
+TEST(Image, sizes_in_the_header_of_an_exr_are_not_believed) {
+  const std::string cut_short = "the OpenEXR header's attribute at byte 8 is cut short";
+  EXPECT_EQ(exr_fault("x", "1234", 4), "");
+  for (const std::uint32_t size : {6U, 1634692198U, 0xFFFFFFFFU}) EXPECT_EQ(exr_fault("x", "1234", size), cut_short);
+  EXPECT_EQ(exr_fault("preview", little_endian(1) + little_endian(2) + "abcdefgh", 16), "");
+  EXPECT_EQ(exr_fault("preview", little_endian(30000) + little_endian(20000) + "abcdefgh", 16), cut_short);
+  EXPECT_EQ(exr_fault("stringvector", little_endian(2) + "ab" + little_endian(0), 10), "");
+  EXPECT_EQ(exr_fault("stringvector", little_endian(0x7FFFFFF0) + "abcdef", 10), cut_short);
+  EXPECT_NE(exr_header_fault(bytes_of(little_endian(20000630))), "");
+  EXPECT_NE(refusal(exr_start("x", "1234", 1634692198)).find(cut_short), std::string::npos);
 }
 
 TEST(Image, every_cut_and_every_flipped_byte_of_a_png_is_refused) {

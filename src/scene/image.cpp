@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/exr_header.h"
 #include "scene/image_library.h"
 #include "scene/image_stream.h"
 #include "scene/import_memory.h"
@@ -127,8 +128,10 @@ class OpenImage {
   [[nodiscard]] bool has_alpha() const {
     return spec_.channels > color_channels() && spec_.alpha_channel == color_channels();
   }
-  /// Leaves out of PNG and JPEG files what makes no pixels.
+  /// Leaves out of PNG and JPEG files what makes no pixels; checks the framing of all but Radiance HDR.
   BytesView reduced(BytesView encoded) {
+    if (format_ == "openexr")
+      if (const std::string fault = exr_header_fault(encoded); !fault.empty()) fail(fault);
     if (format_ != "png" && format_ != "jpeg") return encoded;
     ImageStream stream = format_ == "png" ? png_pixels(encoded) : jpeg_pixels(encoded);
     if (!stream.fault.empty()) fail(stream.fault);

@@ -70,14 +70,14 @@ void use_run(std::string_view text) {
   for (const auto& [key, note] : ledger.notes())
     if (entries.size() < kMostEntries) entries.push_back(ledger.entry(note));
   (void)difference_of_sources(ledger.source(), Json::object());
-  if (ledger.head().is_null()) return;
   (void)difference_of_sources(ledger.source(), ledger.head());
   if (ledger.head().is_object()) (void)find_place(folder, ledger.head().value("places", Json()));
   Journal journal;
   journal.steps.resize(2);
   const ReportEntries list{entries.size(), [&](std::size_t i) { return entries[i]; }};
+  const Json head{{"camera", "Main"}, {"resolution", {2, 1}}, {"samples", 1}, {"cache_damage", Json::array()}};
   for (const bool reads_pixels : {false, true})
-    is_answered(codes, [&] { write_run_page({folder, ledger.head(), list, journal, reads_pixels, {}}); });
+    is_answered(codes, [&] { write_run_page({folder, head, list, journal, reads_pixels, {}}); });
 }
 
 }  // namespace

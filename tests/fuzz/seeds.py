@@ -252,8 +252,8 @@ def scene_files():
 # Edits of the scene of tests/look_fixture.h ---------------------------------------------------------------------------
 EDITS = (
     [{"op": "replace", "path": "/materials/Gold/pbrMetallicRoughness/baseColorFactor", "value": [0.1, 0.2, 0.3, 1]}],
-    [{"op": "test", "path": "/lights/Lamp/intensity", "value": 10},
-     {"op": "replace", "path": "/lights/Lamp/intensity", "value": 20}],
+    [{"op": "test", "path": "/lights/Bulb/intensity", "value": 10},
+     {"op": "replace", "path": "/lights/Bulb/intensity", "value": 20}],
     [{"op": "add", "path": "/nodes/New", "value": {"mesh": "Ball", "translation": [1, 0, 0]}}],
     [{"op": "add", "path": "/nodes/Brought", "value": {"asset": "square.glb"}}],
     [{"op": "remove", "path": "/nodes/Window"}],
@@ -283,7 +283,7 @@ def journal_files():
         return json.dumps({"relook": "journal/1", "steps": list(steps)}).encode()
     for i in range(0, len(EDITS), 4):
         yield journal(*({"name": "s%d" % k, "edit": edit} for k, edit in enumerate(EDITS[i:i + 4])))
-    yield journal({"name": "w", "wedge": {"path": "/lights/Lamp/intensity", "range": {"from": 1, "to": 9, "count": 5}}})
+    yield journal({"name": "w", "wedge": {"path": "/lights/Bulb/intensity", "range": {"from": 1, "to": 9, "count": 5}}})
     yield journal({"wedge": {"path": "/materials/Gold/pbrMetallicRoughness/baseColorFactor", "values": [[1, 0, 0, 1], [0, 1, 0, 1]]}},
                   {"wedge": {"path": "/materials/Phong/extras/relook/model", "values": ["unlit", "blinn-phong"]}})
     yield journal({"select": ["/nodes/Sphere", "/nodes/Lamp"], "drag": [

@@ -1,0 +1,88 @@
+#include "scene/exr_header.h"
+
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string_view>
+
+namespace relook {
+namespace {
+
+constexpr std::size_t kLongestName = 255;  // with the flag for long names; 31 without
+constexpr std::uint32_t kMultiPart = 0x1000;  // a flag of the version field
+
+/// Reads forward; none beyond the end.
+class Cursor {
+ public:
+  explicit Cursor(BytesView bytes) : bytes_(bytes) {}
+  [[nodiscard]] std::size_t offset() const { return at_; }
+  [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
+  /// Of at most kLongestName bytes, without the zero behind it.
+  std::optional<std::string_view> name() {
+    const std::string_view rest = text_of(bytes_.subspan(at_)).substr(0, kLongestName + 1);
+    const std::size_t end = rest.find('\0');
+    if (end == std::string_view::npos) return std::nullopt;
+    at_ += end + 1;
+    return rest.substr(0, end);
+  }
+  std::optional<std::uint32_t> word() {
+    const std::optional<BytesView> bytes = take(sizeof(std::uint32_t));
+    if (!bytes) return std::nullopt;
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes->data(), sizeof value);  // little-endian
+    return value;
+  }
+  std::optional<BytesView> take(std::size_t count) {
+    if (count > bytes_.size() - at_) return std::nullopt;
+    at_ += count;
+    return bytes_.subspan(at_ - count, count);
+  }
+
+ private:
+  BytesView bytes_;
+  std::size_t at_ = 0;
+};
+
+bool is_whole_preview(BytesView value) {
+  Cursor cursor(value);
+  const auto width = cursor.word(), height = cursor.word();
+  return width && height && std::uint64_t{*width} * *height == (value.size() - cursor.offset()) / 4;
+}
+
+bool are_whole_strings(BytesView value) {
+  Cursor cursor(value);
+  while (!cursor.at_end())
+    if (const auto length = cursor.word(); !length || !cursor.take(*length)) return false;
+  return true;
+}
+
+bool is_whole(std::string_view type, BytesView value) {
+  if (type == "preview") return is_whole_preview(value);
+  return type != "stringvector" || are_whole_strings(value);
+}
+
+}  // namespace
+
+std::string exr_header_fault(BytesView exr) {
+  Cursor cursor(exr);
+  static_cast<void>(cursor.word());
+  const auto version = cursor.word();
+  if (!version) return "the OpenEXR file is cut short at byte " + std::to_string(exr.size());
+  for (bool is_first = true;; is_first = false) {
+    const std::size_t start = cursor.offset();
+    while (true) {
+      const std::size_t place = cursor.offset();
+      const auto name = cursor.name();
+      if (name && name->empty()) break;
+      const auto type = name ? cursor.name() : std::nullopt;
+      const auto size = type ? cursor.word() : std::nullopt;
+      const auto value = size ? cursor.take(*size) : std::nullopt;
+      if (!value || !is_whole(*type, *value))
+        return "the OpenEXR header's attribute at byte " + std::to_string(place) + " is cut short";
+    }
+    const bool is_end = cursor.offset() == start + 1;  // an empty header ends those of parts
+    if ((*version & kMultiPart) == 0 || (is_end && !is_first)) return "";
+  }
+}
+
+}  // namespace relook
