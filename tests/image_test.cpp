@@ -1,5 +1,4 @@
 // Image decoding and mip pyramids: values as stored in the file, damage refused, and exact box filters.
-#include "scene/exr_header.h"
 #include "scene/image.h"
 
 #include <ImfRgbaFile.h>
@@ -11,6 +10,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "scene/exr_header.h"
 #include "scene/image_stream.h"
 
 namespace relook {
@@ -169,15 +169,19 @@ std::string exr_fault(const std::string& type, const std::string& value, std::ui
 }
 
 TEST(Image, sizes_in_the_header_of_an_exr_are_not_believed) {
-  const std::string cut_short = "the OpenEXR header's attribute at byte 8 is cut short";
+  const std::string wrong_size = "the OpenEXR header's attribute at byte 8 is not of the size that it says";
   EXPECT_EQ(exr_fault("x", "1234", 4), "");
-  for (const std::uint32_t size : {6U, 1634692198U, 0xFFFFFFFFU}) EXPECT_EQ(exr_fault("x", "1234", size), cut_short);
+  for (const std::uint32_t size : {6U, 1634692198U, 0xFFFFFFFFU}) EXPECT_EQ(exr_fault("x", "1234", size), wrong_size);
   EXPECT_EQ(exr_fault("preview", little_endian(1) + little_endian(2) + "abcdefgh", 16), "");
-  EXPECT_EQ(exr_fault("preview", little_endian(30000) + little_endian(20000) + "abcdefgh", 16), cut_short);
+  EXPECT_EQ(exr_fault("preview", little_endian(30000) + little_endian(20000) + "abcdefgh", 16), wrong_size);
   EXPECT_EQ(exr_fault("stringvector", little_endian(2) + "ab" + little_endian(0), 10), "");
-  EXPECT_EQ(exr_fault("stringvector", little_endian(0x7FFFFFF0) + "abcdef", 10), cut_short);
+  EXPECT_EQ(exr_fault("stringvector", little_endian(0x7FFFFFF0) + "abcdef", 10), wrong_size);
+  const std::string channel = std::string("R\0", 2) + std::string(16, '\0'), end(1, '\0');
+  EXPECT_EQ(exr_fault("chlist", channel + end, 19), "");
+  EXPECT_EQ(exr_fault("chlist", channel + end + "next", 23), wrong_size) << "the library would go on at \"next\"";
+  EXPECT_EQ(exr_fault("box2i", std::string(17, 'b'), 17), wrong_size);
   EXPECT_NE(exr_header_fault(bytes_of(little_endian(20000630))), "");
-  EXPECT_NE(refusal(exr_start("x", "1234", 1634692198)).find(cut_short), std::string::npos);
+  EXPECT_NE(refusal(exr_start("x", "1234", 1634692198)).find(wrong_size), std::string::npos);
 }
 
 TEST(Image, every_cut_and_every_flipped_byte_of_a_png_is_refused) {

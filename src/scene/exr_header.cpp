@@ -1,14 +1,17 @@
 #include "scene/exr_header.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace relook {
 namespace {
 
-constexpr std::size_t kLongestName = 255;  // with the flag for long names; 31 without
+constexpr std::size_t kLongestName = 255;     // with the flag for long names; 31 without
 constexpr std::uint32_t kMultiPart = 0x1000;  // a flag of the version field
 
 /// Reads forward; none beyond the end.
@@ -46,7 +49,8 @@ class Cursor {
 bool is_whole_preview(BytesView value) {
   Cursor cursor(value);
   const auto width = cursor.word(), height = cursor.word();
-  return width && height && std::uint64_t{*width} * *height == (value.size() - cursor.offset()) / 4;
+  return width && height && value.size() % 4 == 0 &&
+         std::uint64_t{*width} * *height == (value.size() - cursor.offset()) / 4;
 }
 
 bool are_whole_strings(BytesView value) {
@@ -56,9 +60,52 @@ bool are_whole_strings(BytesView value) {
   return true;
 }
 
+/// Channels to the zero behind them, which must be the last byte.
+bool are_whole_channels(BytesView value) {
+  constexpr std::size_t kChannelBytes = 16;  // behind the name
+  Cursor cursor(value);
+  while (const auto name = cursor.name()) {
+    if (name->empty()) return cursor.at_end();
+    if (!cursor.take(kChannelBytes)) return false;
+  }
+  return false;
+}
+
+/// Types that the library reads as so many bytes, whatever size the attribute says.
+constexpr std::array<std::pair<std::string_view, std::size_t>, 24> kFixedBytes{{{"box2f", 16},
+                                                                                {"box2i", 16},
+                                                                                {"chromaticities", 32},
+                                                                                {"compression", 1},
+                                                                                {"deepImageState", 1},
+                                                                                {"double", 8},
+                                                                                {"envmap", 1},
+                                                                                {"float", 4},
+                                                                                {"int", 4},
+                                                                                {"keycode", 28},
+                                                                                {"lineOrder", 1},
+                                                                                {"m33d", 72},
+                                                                                {"m33f", 36},
+                                                                                {"m44d", 128},
+                                                                                {"m44f", 64},
+                                                                                {"rational", 8},
+                                                                                {"tiledesc", 9},
+                                                                                {"timecode", 8},
+                                                                                {"v2d", 16},
+                                                                                {"v2f", 8},
+                                                                                {"v2i", 8},
+                                                                                {"v3d", 24},
+                                                                                {"v3f", 12},
+                                                                                {"v3i", 12}}};
+
+/// Does a value take the bytes that its attribute says? Otherwise the library takes the next attribute for elsewhere.
 bool is_whole(std::string_view type, BytesView value) {
   if (type == "preview") return is_whole_preview(value);
-  return type != "stringvector" || are_whole_strings(value);
+  if (type == "stringvector") return are_whole_strings(value);
+  if (type == "chlist") return are_whole_channels(value);
+  if (type == "floatvector") return value.size() % sizeof(float) == 0;
+  if (type == "idmanifest") return value.size() >= sizeof(std::uint32_t);
+  const auto fixed = std::ranges::find(kFixedBytes, type, &std::pair<std::string_view, std::size_t>::first);
+  return fixed == kFixedBytes.end() || fixed->second == value.size();
 }
 
 }  // namespace
@@ -78,7 +125,7 @@ std::string exr_header_fault(BytesView exr) {
       const auto size = type ? cursor.word() : std::nullopt;
       const auto value = size ? cursor.take(*size) : std::nullopt;
       if (!value || !is_whole(*type, *value))
-        return "the OpenEXR header's attribute at byte " + std::to_string(place) + " is cut short";
+        return "the OpenEXR header's attribute at byte " + std::to_string(place) + " is not of the size that it says";
     }
     const bool is_end = cursor.offset() == start + 1;  // an empty header ends those of parts
     if ((*version & kMultiPart) == 0 || (is_end && !is_first)) return "";

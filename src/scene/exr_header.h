@@ -8,7 +8,7 @@
 namespace relook {
 
 /// What is wrong with the headers of a file that begins with OpenEXR's magic number; "" when every attribute, and every
-/// value in it that has a size of its own, lies within the file.
+/// value in it that has a size of its own, lies within the file and takes the bytes that it says.
 [[nodiscard]] std::string exr_header_fault(BytesView exr);
 
 }  // namespace relook

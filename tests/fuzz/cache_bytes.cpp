@@ -103,7 +103,8 @@ CacheBytes CacheBytes::of(const std::filesystem::path& cache) {
     if (!name.ends_with(kExtension))
       bytes.look = Json::parse(text_of(file));
     else
-      bytes.files.push_back({name.substr(0, name.size() - kExtension.size() - kHashDigits), sections_of(file, identity)});
+      bytes.files.push_back(
+          {name.substr(0, name.size() - kExtension.size() - kHashDigits), sections_of(file, identity)});
   }
   std::ranges::stable_partition(bytes.files, [](const File& file) { return !file.stem.starts_with(kTunnels); });
   return bytes;

@@ -50,8 +50,8 @@ class Choices {
  public:
   explicit Choices(BytesView bytes) : bytes_(bytes) {}
   [[nodiscard]] bool at_end() const { return next_ >= bytes_.size(); }
-  std::uint64_t number(std::size_t bytes);                                    // little-endian
-  std::size_t below(std::size_t count) {                                      // [0, count); 0 for none
+  std::uint64_t number(std::size_t bytes);  // little-endian
+  std::size_t below(std::size_t count) {    // [0, count); 0 for none
     return count < 2 ? 0 : static_cast<std::size_t>(number(count > 256 ? 4 : 1)) % count;
   }
   BytesView rest() { return bytes_.subspan(std::min(next_, bytes_.size())); }

@@ -40,7 +40,8 @@ Json& value_of(Json& root, const Place& place) {
 }
 
 Json number_of(Choices& choices) {
-  constexpr std::array<double, 12> kSpecial{0, 1, -1, 0.5, 1e-45, 1e-30, 3.4e38, -3.4e38, 1e300, 4294967295.0, 1e9, -0.0};
+  constexpr std::array<double, 12> kSpecial{0,      1,       -1,    0.5,          1e-45, 1e-30,
+                                            3.4e38, -3.4e38, 1e300, 4294967295.0, 1e9,   -0.0};
   switch (choices.below(5)) {
     case 0:
       return kSpecial[choices.below(kSpecial.size())];
@@ -60,7 +61,8 @@ Json number_of(Choices& choices) {
 }
 
 Json scalar_of(const Json& old, Choices& choices) {
-  constexpr std::array<const char*, 10> kTexts{"", "-", "0", "/", "~", "Gold", "x.glb", "../x", "\xE2\x80\xAE", "scene"};
+  constexpr std::array<const char*, 10> kTexts{"",     "-", "0", "/", "~", "Gold", "x.glb", "../x", "\xE2\x80\xAE",
+                                               "scene"};
   switch (choices.below(8)) {
     case 0:
       return nullptr;
