@@ -8,10 +8,13 @@
 #include <string_view>
 #include <utility>
 
+#include "scene/import_memory.h"
+
 namespace relook {
 namespace {
 
 constexpr std::size_t kLongestName = 255;     // with the flag for long names; 31 without
+constexpr std::size_t kChannelBytes = 16;     // of a channel, behind its name
 constexpr std::uint32_t kMultiPart = 0x1000;  // a flag of the version field
 
 /// Reads forward; none beyond the end.
@@ -62,7 +65,6 @@ bool are_whole_strings(BytesView value) {
 
 /// Channels to the zero behind them, which must be the last byte.
 bool are_whole_channels(BytesView value) {
-  constexpr std::size_t kChannelBytes = 16;  // behind the name
   Cursor cursor(value);
   while (const auto name = cursor.name()) {
     if (name->empty()) return cursor.at_end();
@@ -108,28 +110,71 @@ bool is_whole(std::string_view type, BytesView value) {
   return fixed == kFixedBytes.end() || fixed->second == value.size();
 }
 
+/// What of a part's header says how much of it is unpacked at once.
+struct Part {
+  std::uint64_t pixel_bytes = 0, width = 0, height = 0, tile_texels = 0;
+
+  /// `value`: whole.
+  void take(std::string_view type, std::string_view name, BytesView value) {
+    Cursor cursor(value);
+    if (type == "chlist") add_channels(cursor);
+    if (type == "tiledesc") tile_texels = word(cursor) * word(cursor);
+    if (type != "box2i" || name != "dataWindow") return;
+    const std::int64_t x0 = corner(cursor), y0 = corner(cursor), x1 = corner(cursor), y1 = corner(cursor);
+    width = static_cast<std::uint64_t>(std::max<std::int64_t>(x1 - x0 + 1, 0));
+    height = static_cast<std::uint64_t>(std::max<std::int64_t>(y1 - y0 + 1, 0));
+  }
+  [[nodiscard]] std::uint64_t block_bytes() const {
+    constexpr std::uint64_t kMostRows = 256;  // of DWAB; others pack fewer together
+    const std::uint64_t rows = bounded_product(width, std::min(height, kMostRows));
+    return bounded_product(tile_texels > 0 ? tile_texels : rows, pixel_bytes);
+  }
+
+ private:
+  static std::uint64_t word(Cursor& cursor) { return cursor.word().value_or(0); }
+  static std::int64_t corner(Cursor& cursor) { return static_cast<std::int32_t>(cursor.word().value_or(0)); }
+  void add_channels(Cursor& cursor) {
+    constexpr std::uint32_t kHalf = 1;
+    while (const auto channel = cursor.name()) {
+      if (channel->empty()) return;
+      pixel_bytes += word(cursor) == kHalf ? 2 : 4;
+      static_cast<void>(cursor.take(kChannelBytes - sizeof kHalf));
+    }
+  }
+};
+
+/// The attributes of one part, to the empty name behind them. An error's text, or "".
+std::string read_part(Cursor& cursor, Part& part) {
+  while (true) {
+    const std::size_t place = cursor.offset();
+    const auto name = cursor.name();
+    if (name && name->empty()) return "";
+    const auto type = name ? cursor.name() : std::nullopt;
+    const auto size = type ? cursor.word() : std::nullopt;
+    const auto value = size ? cursor.take(*size) : std::nullopt;
+    if (!value || !is_whole(*type, *value))
+      return "the OpenEXR header's attribute at byte " + std::to_string(place) + " is not of the size that it says";
+    part.take(*type, *name, *value);
+  }
+}
+
 }  // namespace
 
-std::string exr_header_fault(BytesView exr) {
+ExrHeader read_exr_header(BytesView exr) {
+  ExrHeader header;
   Cursor cursor(exr);
   static_cast<void>(cursor.word());
   const auto version = cursor.word();
-  if (!version) return "the OpenEXR file is cut short at byte " + std::to_string(exr.size());
-  for (bool is_first = true;; is_first = false) {
+  if (!version) header.fault = "the OpenEXR file is cut short at byte " + std::to_string(exr.size());
+  for (bool is_first = true; header.fault.empty(); is_first = false) {
     const std::size_t start = cursor.offset();
-    while (true) {
-      const std::size_t place = cursor.offset();
-      const auto name = cursor.name();
-      if (name && name->empty()) break;
-      const auto type = name ? cursor.name() : std::nullopt;
-      const auto size = type ? cursor.word() : std::nullopt;
-      const auto value = size ? cursor.take(*size) : std::nullopt;
-      if (!value || !is_whole(*type, *value))
-        return "the OpenEXR header's attribute at byte " + std::to_string(place) + " is not of the size that it says";
-    }
+    Part part;
+    header.fault = read_part(cursor, part);
+    header.block_bytes = std::max(header.block_bytes, part.block_bytes());
     const bool is_end = cursor.offset() == start + 1;  // an empty header ends those of parts
-    if ((*version & kMultiPart) == 0 || (is_end && !is_first)) return "";
+    if ((*version & kMultiPart) == 0 || (is_end && !is_first)) break;
   }
+  return header;
 }
 
 }  // namespace relook
