@@ -37,7 +37,7 @@ if [ "$seconds" = keep ]; then
     kept="tests/fuzz/corpus/$target"
     rm -rf "$work/kept_$target"
     mkdir -p "$work/kept_$target" "$work/found/$target" "$kept"
-    "build/asan/fuzz_$target" -merge=1 -max_len=$most_bytes -timeout=10 "$work/kept_$target" "$kept" "$work/seeds/$target" \
+    "build/asan/fuzz_$target" -set_cover_merge=1 -max_len=$most_bytes -timeout=10 "$work/kept_$target" "$kept" "$work/seeds/$target" \
       "$work/found/$target" >"$work/keep_$target.log" 2>&1
     python3 tests/fuzz/choose.py "$work/kept_$target" "$kept"
   done
