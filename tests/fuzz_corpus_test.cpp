@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <ostream>
+#include <string>
 #include <vector>
 
 #include "base/files.h"
@@ -46,8 +47,9 @@ TEST_P(FuzzCorpus, has_an_answer_each) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, FuzzCorpus, testing::ValuesIn(kFuzzTargets),
-                         [](const testing::TestParamInfo<FuzzTarget>& info) { return std::string(info.param.name); });
+std::string target_name(const testing::TestParamInfo<FuzzTarget>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Targets, FuzzCorpus, testing::ValuesIn(kFuzzTargets), target_name);
 
 }  // namespace
 }  // namespace relook
