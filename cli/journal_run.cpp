@@ -170,6 +170,7 @@ void JournalRun::run_step(std::uint32_t step) {
 StepReport JournalRun::new_entry(std::uint32_t step, std::size_t frame) const {
   StepReport entry;
   entry.edits_hash = plan_.hashes().at(step, frame);
+  entry.source_hash = plan_.source_hash();
   entry.verify_percent = arguments_.verify_percent;
   if (step == 0) {
     entry.name = "base";

@@ -7,8 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
-#include "base/files.h"
 #include "base/standard_input.h"
 #include "cache/cache_names.h"
 #include "named_files.h"
@@ -50,23 +48,23 @@ void add_all(const std::string& list, char between, Paths& paths) {
   }
 }
 
-/// What the links in a folder lead to, and those in its folders down to `depth`: frames on another disk.
+/// What the links in a folder lead to, and those in its folders, linked ones too, down to `depth`: frames on another
+/// disk.
 void add_links(const fs::path& folder, int depth, Paths& paths) {
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     std::error_code ignored;
-    if (at->is_symlink(ignored))
-      paths.push_back(at->path());
-    else if (depth > 0 && at->is_directory(ignored))
-      add_links(at->path(), depth - 1, paths);
+    if (at->is_symlink(ignored)) paths.push_back(at->path());
+    if (depth > 0 && at->is_directory(ignored)) add_links(at->path(), depth - 1, paths);
   }
 }
 constexpr int kDepth = 2;  // RUN/JOURNAL/frames
 
-/// A descriptor's name (/dev/stdin) has no folder.
+/// The name of a device or descriptor (/dev/stdin, /dev/fd/3, /proc/self/fd/3) has no folder.
 bool is_descriptor(const fs::path& path) {
-  const std::string name = path.string();
-  return name.starts_with("/dev/") || name.starts_with("/proc/");
+  const fs::path folder = path.parent_path();
+  return folder == "/dev" || folder == "/dev/fd" ||
+         (folder.filename() == "fd" && folder.string().starts_with("/proc/"));
 }
 
 void add_input(const fs::path& input, Paths& readable) {
@@ -113,33 +111,6 @@ void add_owners(const fs::path& output, Paths& readable) {
   }
 }
 
-/// The config of $OCIO with the folders in which its `search_path` has the tables.
-void add_display_views(const fs::path& config, Paths& readable) {
-  add_input(config, readable);
-  const fs::path folder = full_path(config).parent_path();
-  const auto add = [&](std::string text) {
-    std::erase_if(text, [](char c) { return std::string_view(" \t\r\"'[],").find(c) != std::string_view::npos; });
-    Paths places;
-    add_all(text, ':', places);
-    for (const fs::path& place : places) readable.push_back(folder / place);
-  };
-  try {
-    const Bytes bytes = read_file(config);
-    Paths lines;
-    add_all(std::string(text_of(bytes)), '\n', lines);
-    constexpr std::string_view kKey = "search_path:";
-    bool is_list = false;
-    for (const fs::path& entry : lines) {
-      const std::string line = entry.string();
-      const std::size_t start = std::min(line.find_first_not_of(" \t"), line.size());
-      if (line.starts_with(kKey)) add(line.substr(kKey.size()));
-      if (is_list && line[start] == '-') add(line.substr(start + 1));
-      is_list = line.starts_with(kKey) || (is_list && line[start] == '-');
-    }
-  } catch (const Error&) {  // said when it is used
-  }
-}
-
 /// The folders of what is loaded already; others of the same installation lie beside it.
 int add_library(dl_phdr_info* library, std::size_t, void* readable) {
   const fs::path path(library->dlpi_name);
@@ -155,11 +126,17 @@ void add_system(Reach& reach) {
     readable.emplace_back(path);
   reach.writable.emplace_back("/dev/null");
   dl_iterate_phdr(add_library, &readable);
-  if (const char* folders = std::getenv("LD_LIBRARY_PATH")) add_all(folders, ':', readable);
+  if (const char* folders = std::getenv("LD_LIBRARY_PATH")) {
+    std::string list(folders);
+    std::ranges::replace(list, ';', ':');
+    add_all(list, ':', readable);
+  }
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
-  readable.push_back(program);
-  readable.push_back(program.parent_path() / "lib" / "relook");
+  for (const fs::path& folder : {program, program.parent_path() / "lib" / "relook"}) {
+    readable.push_back(folder);
+    for (const char* module : {"librelook_images.so", "librelook_views.so"}) readable.push_back(folder / module);  // links
+  }
 }
 
 }  // namespace
@@ -168,7 +145,8 @@ Reach reach_of(const Arguments& arguments) {
   Reach reach;
   add_system(reach);
   for (const NamedInput& input : inputs_of(arguments)) add_input(input.path, reach.readable);
-  if (const char* config = std::getenv("OCIO")) add_display_views(config, reach.readable);
+  // An OpenColorIO config names its tables in many ways, by variables of the environment, too: only the library knows.
+  if (std::getenv("OCIO") != nullptr) reach.readable.emplace_back("/");
   const bool has_standard_input = std::ranges::find(arguments.inputs, kStandardInput) != arguments.inputs.end() ||
                                   arguments.journal == kStandardInput || arguments.view.look_patch == kStandardInput;
   if (has_standard_input) reach.readable.emplace_back(".");

@@ -21,6 +21,7 @@ RunPlan::RunPlan(const Arguments& arguments, const Journal& journal, std::filesy
       files_(std::make_unique<NotedFiles>(folder_)) {
   unsigned width = 0, height = 0;
   std::sscanf(source_.at("resolution").get_ref<const std::string&>().c_str(), "%ux%u", &width, &height);
+  source_hash_ = hash_of_source(source_);
   pixels_ = std::uint64_t{width} * height;
   samples_ = pixels_ * std::stoull(source_.at("samples").get_ref<const std::string&>());
   const auto steps = static_cast<std::uint32_t>(journal.steps.size());
@@ -134,6 +135,9 @@ KnownFrame RunPlan::known_frame(const LedgerKey& key) const {
   known.edits = expected_edits(key).value_or("");
   known.frame = frame_name_of(key);
   known.preview = preview_name(place_of_key(key));
+  known.source = source_hash_;
+  known.is_numbered = number != kWholeStep;
+  known.is_drag = step > 0 && step <= journal_.steps.size() && !journal_.steps[step - 1].drag.empty();
   known.is_base = step == 0;
   known.is_whole_step = !is_frame(key);
   known.pixels = pixels_;
@@ -180,7 +184,9 @@ void RunPlan::judge_notes() {
   std::vector<const std::pair<const LedgerKey, RunLedger::Note>*> notes;
   for (const auto& entry : ledger_->notes()) {
     const auto& [key, note] = entry;
-    const bool is_wanted = key.first >= first_ && key.first <= last_ && !(arguments_.fresh && !note.is_fresh);
+    // What was done afresh, by a command that was then killed, counts; but it is not what --verify may rely on.
+    const bool is_old = arguments_.fresh && (!note.is_fresh || arguments_.verify_percent);
+    const bool is_wanted = key.first >= first_ && key.first <= last_ && !is_old;
     if (is_wanted && is_of_journal(key, note)) notes.push_back(&entry);
   }
   struct Judgement {
@@ -254,10 +260,24 @@ void RunPlan::count_kept() {
   const bool wants_page = arguments_.report == ReportKind::html && !has_current_page();
   const bool lacks_baseline =
       arguments_.baseline && is_in_head("full_render_seconds", [](const Json& value) { return value.is_null(); });
-  const bool has_whole_report =
-      has_all_in_report && is_in_head("interrupted", [](const Json& value) { return value == false; });
+  const bool has_whole_report = has_all_in_report && has_true_head(head) &&
+                                is_in_head("interrupted", [](const Json& value) { return value == false; });
   is_complete_ = kept_frames_ == frames_ && !replaces_some_ && !wants_page && !lacks_baseline &&
                  (arguments_.report == ReportKind::none || has_whole_report);
+}
+
+/// What the source says as well.
+bool RunPlan::has_true_head(const Json& head) const {
+  try {
+    const JsonView view(head, kReportName), resolution = view.at("resolution");
+    const std::string pixels =
+        std::to_string(resolution.at(0).integer(1, INT32_MAX)) + "x" + std::to_string(resolution.at(1).integer(1, INT32_MAX));
+    return pixels == source_.at("resolution") && view.at("samples").value().dump() == source_.at("samples") &&
+           view.at("scene").at("hash").value() == source_.at("scene") &&
+           view.at("options").at("max_depth").value().dump() == source_.at("max_depth");
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 void RunPlan::require_free_names(const FramePlace& here) const {

@@ -29,6 +29,7 @@ class RunPlan {
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const Json& source() const { return source_; }
+  [[nodiscard]] const std::string& source_hash() const { return source_hash_; }
   [[nodiscard]] const EditHashes& hashes() const { return hashes_; }
   /// The steps whose frames are asked for; 0 is the frame before any.
   [[nodiscard]] std::uint32_t first_step() const { return first_; }
@@ -83,6 +84,7 @@ class RunPlan {
   [[nodiscard]] KnownFrame known_frame(const LedgerKey& key) const;
   [[nodiscard]] bool is_its_frame(const LedgerKey& key, const Json& entry) const;
   [[nodiscard]] FramePlace place_of_key(const LedgerKey& key) const;
+  [[nodiscard]] bool has_true_head(const Json& head) const;
   void require_free_names(const FramePlace& here) const;
   [[nodiscard]] std::optional<std::string> other_journal() const;
   [[nodiscard]] std::optional<std::string> expected_edits(const LedgerKey& key) const;
@@ -101,6 +103,7 @@ class RunPlan {
   EditHashes hashes_;
   std::unique_ptr<NotedFiles> files_;
   std::uint64_t pixels_ = 0, samples_ = 0;  // of a frame
+  std::string source_hash_;
   std::uint32_t first_ = 0, last_ = 0;
   std::optional<RunLedger> ledger_;  // of a run that can be gone on with, or in which things are replaced
   bool replaces_some_ = false;       // --overwrite of anything there

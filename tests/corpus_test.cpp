@@ -12,6 +12,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/sanitizers.h"
 #include "run_program.h"
 #include "scene/image.h"
 #include "scene/import.h"
@@ -23,12 +24,6 @@ namespace fs = std::filesystem;
 
 const fs::path kShared = fs::path(RELOOK_SOURCE_DIR) / ".." / "shared";
 const fs::path kAssets = kShared / "assets";
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kIsInstrumented = true;
-#else
-constexpr bool kIsInstrumented = false;
-#endif
 
 class Corpus : public testing::Test {
  protected:

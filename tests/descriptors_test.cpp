@@ -49,7 +49,7 @@ Json without_numbers(const Json& value) {
   for (const auto& [key, item] : value.items()) {
     if (value.is_array())
       result.push_back(without_numbers(item));
-    else if (key != "command")  // a number, too, in letters
+    else if (key != "command" && key != "seal")  // numbers, too, in letters
       result[key] = without_numbers(item);
   }
   return result;

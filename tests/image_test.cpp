@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "scene/exr_header.h"
 #include "scene/image_stream.h"
 
 namespace relook {
@@ -154,6 +155,55 @@ TEST(Image, jpeg_metadata_never_reaches_the_decoder) {
   const std::string segment = "\xFF\xED" + big_endian(static_cast<std::uint32_t>(iptc.size() + 2), 2) + iptc;
   EXPECT_EQ(text_of(jpeg_pixels(bytes_of(jpeg(segment))).bytes), jpeg());
   EXPECT_EQ(decoded(jpeg(segment))->texels8, decoded(jpeg())->texels8);
+}
+
+std::string little_endian(std::uint32_t value) { return {reinterpret_cast<const char*>(&value), sizeof value}; }
+
+/// The start of an OpenEXR file whose header has one attribute.
+std::string exr_start(const std::string& type, const std::string& value, std::uint32_t size) {
+  return little_endian(20000630) + little_endian(2) + "a" + std::string(1, '\0') + type + std::string(1, '\0') +
+         little_endian(size) + value + std::string(1, '\0');
+}
+std::string exr_fault(const std::string& type, const std::string& value, std::uint32_t size) {
+  return read_exr_header(bytes_of(exr_start(type, value, size))).fault;
+}
+
+TEST(Image, sizes_in_the_header_of_an_exr_are_not_believed) {
+  const std::string wrong_size = "the OpenEXR header's attribute at byte 8 is not of the size that it says";
+  EXPECT_EQ(exr_fault("x", "1234", 4), "");
+  for (const std::uint32_t size : {6U, 1634692198U, 0xFFFFFFFFU}) EXPECT_EQ(exr_fault("x", "1234", size), wrong_size);
+  EXPECT_EQ(exr_fault("preview", little_endian(1) + little_endian(2) + "abcdefgh", 16), "");
+  EXPECT_EQ(exr_fault("preview", little_endian(30000) + little_endian(20000) + "abcdefgh", 16), wrong_size);
+  EXPECT_EQ(exr_fault("stringvector", little_endian(2) + "ab" + little_endian(0), 10), "");
+  EXPECT_EQ(exr_fault("stringvector", little_endian(0x7FFFFFF0) + "abcdef", 10), wrong_size);
+  const std::string channel = std::string("R\0", 2) + std::string(16, '\0'), end(1, '\0');
+  EXPECT_EQ(exr_fault("chlist", channel + end, 19), "");
+  EXPECT_EQ(exr_fault("chlist", channel + end + "next", 23), wrong_size) << "the library would go on at \"next\"";
+  EXPECT_EQ(exr_fault("box2i", std::string(17, 'b'), 17), wrong_size);
+  EXPECT_NE(read_exr_header(bytes_of(little_endian(20000630))).fault, "");
+  EXPECT_NE(refusal(exr_start("x", "1234", 1634692198)).find(wrong_size), std::string::npos);
+}
+
+TEST(Image, tiles_and_rows_of_an_exr_are_counted_before_it_is_opened) {
+  const auto attribute = [](const std::string& name, const std::string& type, const std::string& value) {
+    return name + std::string(1, '\0') + type + std::string(1, '\0') +
+           little_endian(static_cast<std::uint32_t>(value.size())) + value;
+  };
+  const auto header = [&](std::uint32_t last_column, const std::string& more) {
+    const std::string zero = little_endian(0);
+    const std::string channel = std::string("R\0", 2) + little_endian(1) + zero + little_endian(1) + little_endian(1);
+    return little_endian(20000630) + little_endian(2) +
+           attribute("channels", "chlist", channel + std::string(1, '\0')) +
+           attribute("dataWindow", "box2i", zero + zero + little_endian(last_column) + little_endian(299)) + more +
+           std::string(1, '\0');
+  };
+  const auto tiles = [&](std::uint32_t columns, std::uint32_t rows) {
+    return attribute("tiles", "tiledesc", little_endian(columns) + little_endian(rows) + std::string(1, '\0'));
+  };
+  EXPECT_EQ(read_exr_header(bytes_of(header(9, ""))).block_bytes, 10U * 256 * 2);
+  EXPECT_EQ(read_exr_header(bytes_of(header(9, tiles(4, 0x1B000000)))).block_bytes, 4ULL * 0x1B000000 * 2);
+  for (const std::string& large : {header(9, tiles(0x10000, 0x10000)), header(0x7FFFFFF0, "")})
+    EXPECT_THROW(decoded(large), ResourceError);
 }
 
 TEST(Image, every_cut_and_every_flipped_byte_of_a_png_is_refused) {

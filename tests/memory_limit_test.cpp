@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "base/json.h"
+#include "base/sanitizers.h"
 #include "run_program.h"
 
 namespace relook {
@@ -18,9 +19,7 @@ constexpr double kAbove = 1.05;  // what a peak may be of its limit
 class MemoryLimit : public testing::Test {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "sanitizers take memory of their own";
-#endif
+    if (kIsInstrumented) GTEST_SKIP() << "sanitizers take memory of their own";
     ASSERT_EQ(run_program({RELOOK_PROGRAM, "preprocess", kScene, "-o", at("c"), "--resolution", "800x450", "--quiet"})
                   .exit_code,
               0);

@@ -1,6 +1,7 @@
 // Edits at random, from a seed, on the scenes of the tests.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@ namespace relook {
 
 class Dice {
  public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  explicit Dice(std::uint64_t seed) : next_([engine = std::mt19937_64(seed)]() mutable { return engine(); }) {}
+  /// Throws are whatever `next` gives.
+  explicit Dice(std::function<std::uint64_t()> next) : next_(std::move(next)) {}
   /// [0, count)
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(next_() % count); }
   bool chance(double share) { return between(0, 1) < share; }
   /// On a grid of 1/64, so that JSON and float agree.
   double between(double low, double high) {
@@ -32,7 +35,7 @@ class Dice {
   Json color() { return {between(0, 1), between(0, 1), between(0, 1)}; }
 
  private:
-  std::mt19937_64 engine_;
+  std::function<std::uint64_t()> next_;
 };
 
 /// An edit and what undoes it.

@@ -105,6 +105,7 @@ std::vector<StepReport> small_steps() {
   StepReport base;
   base.name = "base";
   base.change = ChangeClass::base;
+  base.source_hash = std::string(32, 'c');
   base.frame = frame_name(base.place);
   base.files[base.frame] = {std::string(32, 'a'), 100, 1};
   StepReport dragged = base;

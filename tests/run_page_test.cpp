@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files.h"
+#include "base/sanitizers.h"
 #include "page/page_files.h"
 #include "page/page_pixels.h"
 #include "page_browser.h"
@@ -121,9 +122,7 @@ TEST(RunPage, the_step_of_a_drag_shares_the_last_frame_and_labels_are_as_wide_as
 }
 
 TEST(RunPage, memory_does_not_follow_the_number_of_steps) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers keep what is freed";
-#endif
+  if (kIsInstrumented) GTEST_SKIP() << "sanitizers keep what is freed";
   const ScratchFolder folder("page_memory");
   SyntheticRun run(folder / "run", 64, 40, all_changes);
   for (std::size_t i = 0; i < 20; ++i) run.add(i);

@@ -78,7 +78,7 @@ class Sandbox : public testing::Test {
 };
 
 TEST_F(Sandbox, refuses_calls_that_a_renderer_has_no_use_for) {
-  expect_refused(said_within(reach(), [] { return lines_of(hostile_calls()); }), 26);
+  expect_refused(said_within(reach(), [] { return lines_of(hostile_calls()); }), 32);
 }
 
 TEST_F(Sandbox, refuses_files_out_of_reach) {
@@ -177,7 +177,7 @@ TEST_F(SandboxedProgram, refuses_what_a_fault_in_it_would_be_used_for) {
       if (line.starts_with("hostile: ")) lines += line + "\n";
     return lines;
   };
-  expect_refused(hostile(shim), 34);
+  expect_refused(hostile(shim), 40);
   std::vector<std::string> without = shim;
   without.emplace_back("RELOOK_SANDBOX=off");
   EXPECT_NE(hostile(without).find("hostile: read a file: 0\n"), std::string::npos) << "the shim can attack";
@@ -224,7 +224,12 @@ TEST_F(SandboxedProgram, reads_and_writes_whatever_way_files_are_named) {
       "$R journal wedge scene/spheres.gltf /lights/Lamp/intensity 5 10 -o wedge.json --quiet",
       "$R inspect scene/spheres.gltf --look > look.txt",
       "$R inspect moved/j.json --scene links/c --quiet",
-      "$R inspect moved/run && $R inspect links/c"};
+      "$R inspect moved/run && $R inspect links/c",
+      "t=$(mktemp -d /dev/shm/relook.XXXXXX) && cp -r scene paint.png j.json $t && $R render $t/scene/spheres.gltf -o f.exr $S"
+      " && $R replay c $t/j.json -o runs/shm --quiet; r=$?; rm -rf $t; exit $r",
+      "$R replay c j.json other.json -o runs/two --quiet && mkdir -p a1 b1 && mv runs/two/other/frames a1/F &&"
+      " ln -s $PWD/a1/F runs/two/other/frames && mv runs/two/other b1/O && ln -s $PWD/b1/O runs/two/other &&"
+      " $R replay c j.json other.json -o runs/two --fresh --quiet"};
   for (const std::string& line : lines) {
     SCOPED_TRACE(line);
     expect_done(shell(line));

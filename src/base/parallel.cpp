@@ -12,6 +12,8 @@
 #include <memory>
 #include <utility>
 
+#include "base/sanitizers.h"
+
 namespace relook {
 namespace {
 
@@ -64,16 +66,15 @@ namespace {
 /// Debian's TBB, so in its builds an atomic says the same once more.
 class Meeting {
  public:
-#if defined(__SANITIZE_THREAD__)
-  void pass_on() { passed_.fetch_add(1, std::memory_order_release); }
-  void take_over() { static_cast<void>(passed_.load(std::memory_order_acquire)); }
+  void pass_on() {
+    if constexpr (kHasThreadSanitizer) passed_.fetch_add(1, std::memory_order_release);
+  }
+  void take_over() {
+    if constexpr (kHasThreadSanitizer) static_cast<void>(passed_.load(std::memory_order_acquire));
+  }
 
  private:
   std::atomic<int> passed_ = 0;
-#else
-  void pass_on() {}
-  void take_over() {}
-#endif
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ constexpr std::uint32_t kLastKnownCall = 450;
 
 constexpr long kRefused[] = {
     // Other programs and processes; fork() is a clone without CLONE_THREAD where it has no call of its own.
-    SYS_execve, SYS_execveat, SYS_ptrace, SYS_process_vm_readv, SYS_process_vm_writev, SYS_process_madvise,
+    SYS_execve, SYS_execveat, SYS_setpriority, SYS_ioprio_set, SYS_ptrace, SYS_process_vm_readv, SYS_process_vm_writev, SYS_process_madvise,
     SYS_process_mrelease, SYS_kcmp, SYS_pidfd_open, SYS_pidfd_getfd, SYS_pidfd_send_signal, SYS_rt_sigqueueinfo,
     SYS_rt_tgsigqueueinfo,
 #ifdef SYS_fork
@@ -41,10 +41,10 @@ constexpr long kRefused[] = {
     SYS_setsockopt, SYS_getsockopt, SYS_shmget, SYS_shmat, SYS_shmctl, SYS_shmdt, SYS_msgget, SYS_msgsnd, SYS_msgrcv,
     SYS_msgctl, SYS_semget, SYS_semop, SYS_semctl, SYS_semtimedop, SYS_mq_open, SYS_mq_unlink,
     // Names, owners and modes that Landlock has no say in.
-    SYS_linkat, SYS_symlinkat, SYS_mknodat, SYS_fchmodat, SYS_fchownat, SYS_setxattr, SYS_lsetxattr, SYS_removexattr,
-    SYS_lremovexattr, SYS_name_to_handle_at, SYS_open_by_handle_at, SYS_fanotify_init, SYS_fanotify_mark,
+    SYS_linkat, SYS_symlinkat, SYS_mknodat, SYS_fchmodat, SYS_fchmod, SYS_fchownat, SYS_fchown, SYS_utimensat,
+    SYS_setxattr, SYS_lsetxattr, SYS_fsetxattr, SYS_removexattr, SYS_lremovexattr, SYS_fremovexattr, SYS_name_to_handle_at, SYS_open_by_handle_at, SYS_fanotify_init, SYS_fanotify_mark,
 #ifdef SYS_link
-    SYS_link, SYS_symlink, SYS_mknod, SYS_chmod, SYS_chown, SYS_lchown,
+    SYS_link, SYS_symlink, SYS_mknod, SYS_chmod, SYS_chown, SYS_lchown, SYS_utime, SYS_utimes, SYS_futimesat,
 #endif
     // Namespaces and file systems.
     SYS_unshare, SYS_setns, SYS_chroot, SYS_pivot_root, SYS_mount, SYS_umount2, SYS_move_mount, SYS_open_tree,
@@ -122,6 +122,16 @@ std::vector<sock_filter> system_call_filter(pid_t own) {
     filter.when(BPF_JEQ, static_cast<std::uint32_t>(own), 1);
     filter.answer(SECCOMP_RET_ALLOW);
     filter.answer(kFail);
+  }
+  // Of the process itself, as 0 or by its number: limits, and on which processors it runs.
+  for (const long call :
+       {SYS_prlimit64, SYS_sched_setaffinity, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr}) {
+    filter.when(BPF_JEQ, static_cast<std::uint32_t>(call), 5);
+    filter.load(argument(0));
+    filter.unless(BPF_JEQ, 0, 2);
+    filter.unless(BPF_JEQ, static_cast<std::uint32_t>(own), 1);
+    filter.answer(kFail);
+    filter.answer(SECCOMP_RET_ALLOW);
   }
   // Both type into the terminal from which the program was started.
   filter.when(BPF_JEQ, SYS_ioctl, 5);

@@ -4,6 +4,10 @@
 #include <gnu/libc-version.h>
 #endif
 
+#if defined(__x86_64__)
+#include <cpuid.h>
+#endif
+
 #include "base/error.h"
 #include "trace/embree_version.h"
 
@@ -18,15 +22,22 @@ std::string libc_version() {
 #endif
 }
 
+#if defined(__x86_64__)
+/// F16C, RDRND and LZCNT, by whose names clang 16's __builtin_cpu_supports knows no processor.
+bool has_small_extensions() {
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & bit_F16C) == 0 || (c & bit_RDRND) == 0) return false;
+  return __get_cpuid(0x80000001U, &a, &b, &c, &d) != 0 && (c & bit_LZCNT) != 0;
+}
+#endif
+
 /// The tracer opens Embree with at most AVX2, so that machines with AVX-512 run the same kernels as others; which of
 /// them follows from more flags than the one they are called by. glibc has variants with fused multiply-add of libm's
 /// functions, for AVX2 and FMA4.
 std::string instruction_set() {
 #if defined(__x86_64__)
   const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
-                        __builtin_cpu_supports("lzcnt") && __builtin_cpu_supports("f16c") &&
-                        __builtin_cpu_supports("rdrnd");
+                        __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && has_small_extensions();
   if (has_avx2) return "avx2";
   if (__builtin_cpu_supports("avx")) return __builtin_cpu_supports("fma4") ? "avx+fma4" : "avx";
   return __builtin_cpu_supports("sse4.2") ? "sse4.2" : "sse2";

@@ -37,7 +37,7 @@ class Trials {
     if (!value.is_string()) return names;
     for (const char* section : {"images", "textures"})
       for (const auto& [name, entry] : state_.document().look.at(section).items())
-        if (name != value) {
+        if (name != value.get_ref<const std::string&>()) {
           names.emplace_back(name);
           break;
         }

@@ -117,7 +117,7 @@ std::vector<unsigned char> FrameTiles::unpacked(std::size_t tile) const {
   // Differences, first those of the bytes at even places.
   unsigned char value = 128;
   const unsigned char* next = split.data();
-  for (const std::size_t first : {0, 1})
+  for (const std::size_t first : {std::size_t{0}, std::size_t{1}})
     for (std::size_t i = first; i < raw_bytes; i += 2)
       raw[i] = value = static_cast<unsigned char>(value + *next++ - 128);
   return raw;

@@ -89,6 +89,7 @@ Json step_json(const StepReport& step) {
           {"frame_hash", frame == step.files.end() ? "" : frame->second.hash},
           {"preview", step.preview},
           {"edits", step.edits_hash},
+          {"source", step.source_hash},
           {"files", files_json(step.files)},
           {"command", step.command},
           {"samples_total", counters.samples_total},

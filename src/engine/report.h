@@ -44,6 +44,7 @@ struct StepReport {
   bool is_drag = false;        // what numbered frames are of
   std::string frame, preview;  // files relative to the run folder
   std::string edits_hash;      // see report/edit_hashes.h
+  std::string source_hash;     // of RunReport::source
   bool has_overlays = false;   // they were asked for
   std::optional<double> verify_percent;
   std::string command;  // that has done it: a number of its own

@@ -17,7 +17,7 @@ constexpr std::string_view kSealStart = ",\"seal\":\"", kSealEnd = "\"}";
 constexpr double kMostSeconds = 1e9;
 constexpr std::int64_t kMostFrames = 1'000'000;
 
-constexpr std::array<std::string_view, 35> kMembers{"step",
+constexpr std::array<std::string_view, 36> kMembers{"step",
                                                     "name",
                                                     "class",
                                                     "reasons",
@@ -27,6 +27,7 @@ constexpr std::array<std::string_view, 35> kMembers{"step",
                                                     "frame_hash",
                                                     "preview",
                                                     "edits",
+                                                    "source",
                                                     "files",
                                                     "command",
                                                     "seal",
@@ -144,7 +145,9 @@ void check_files(const JsonView& view) {
     check_count(stamp.at("bytes"));
     (void)stamp.at("modified").integer(INT64_MIN, INT64_MAX);
   }
-  for (std::size_t i = 0; i < 2; ++i) (void)files.at(names[i]);
+  constexpr std::size_t kAlways = 2;  // frame and preview
+  for (std::size_t i = 0; i < kAlways; ++i) (void)files.at(names[i]);
+  if (view.at("overlays").boolean()) (void)files.at("overlays/" + stem + "_groups.png");
   if (view.at("frame_hash").text() != files.at(frame).at("hash").text()) view.at("frame_hash").fail("not the file's");
 }
 
@@ -160,6 +163,7 @@ void check_entry(const Json& entry) {
   reasons.require_array();
   for (std::size_t i = 0; i < reasons.size(); ++i) (void)reasons.at(i).text();
   if (!view.at("edits").text().empty()) check_digits(view.at("edits"), kHashDigits);
+  check_digits(view.at("source"), kHashDigits);
   check_digits(view.at("command"), kCommandDigits);
   (void)view.at("resumed").boolean();
   check_numbers(view);
@@ -170,7 +174,10 @@ void check_entry(const Json& entry) {
 bool agrees(const Json& entry, const KnownFrame& known) {
   const auto count = [&](const char* key) { return entry.at(key).get<std::uint64_t>(); };
   const bool has_its_names =
-      entry.at("edits") == known.edits && entry.at("frame") == known.frame && entry.at("preview") == known.preview;
+      entry.at("edits") == known.edits && entry.at("source") == known.source && entry.at("frame") == known.frame &&
+      entry.at("preview") == known.preview &&
+      entry.at("drag_frame").is_number() == (known.is_numbered && known.is_drag) &&
+      entry.at("wedge_frame").is_number() == (known.is_numbered && !known.is_drag);
   const bool may_have_counts = (known.is_whole_step || count("samples_total") == known.samples) &&
                                count("samples_total") <= known.samples && count("samples_affected") <= known.samples &&
                                count("pixels_changed") <= known.pixels;

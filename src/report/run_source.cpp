@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/hash.h"
 
 namespace relook {
 
@@ -21,6 +22,8 @@ Json run_source(const Json& manifest, const FrameStyle& style) {
           {"layers", style.has_layers ? "layers" : "no layers"},
           {"view", style.view}};
 }
+
+std::string hash_of_source(const Json& source) { return hash128(bytes_of(source.dump())); }
 
 std::optional<std::string> difference_of_sources(const Json& there, const Json& here) {
   if (there == here) return std::nullopt;

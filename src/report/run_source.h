@@ -16,6 +16,8 @@ struct FrameStyle {
 
 /// `manifest`: of the cache (read_manifest()).
 [[nodiscard]] Json run_source(const Json& manifest, const FrameStyle& style);
+/// What each entry of a run says of its source: XXH3-128.
+[[nodiscard]] std::string hash_of_source(const Json& source);
 /// How a run differs: "frames of 960x540 pixels, not 480x270"; none when it is of the same source.
 [[nodiscard]] std::optional<std::string> difference_of_sources(const Json& there, const Json& here);
 

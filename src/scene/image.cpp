@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/exr_header.h"
 #include "scene/image_library.h"
 #include "scene/image_stream.h"
 #include "scene/import_memory.h"
@@ -14,6 +15,8 @@ namespace {
 
 /// Of rows that are decoded at once, in the format of the pyramid.
 constexpr std::size_t kRowBytes = std::size_t{4} << 20;
+/// What a decoder may hold beside the result without being counted.
+constexpr std::uint64_t kFewBytes = std::uint64_t{64} << 20;
 /// Bound of an HDR texel: sums of many stay finite.
 constexpr float kLargestTexel = 1e9F;
 
@@ -116,7 +119,7 @@ class OpenImage {
   /// Of the rows that are decoded at once, with all channels that the file has; 0: few. OpenEXR unpacks up to 256.
   [[nodiscard]] std::uint64_t block_bytes() const {
     constexpr int kBlockRows = 256;
-    constexpr std::uint64_t kFewBytes = std::uint64_t{64} << 20, kCopies = 8;  // numbers of a texel, on their way
+    constexpr std::uint64_t kCopies = 8;  // numbers of a texel, on their way
     const int rows = std::min(std::max(format_ == "openexr" ? kBlockRows : 1, spec_.tile_height), spec_.height);
     const std::uint64_t texel = (static_cast<std::uint64_t>(spec_.channels) + kCopies) * sizeof(float);
     const std::uint64_t block =
@@ -127,18 +130,25 @@ class OpenImage {
   [[nodiscard]] bool has_alpha() const {
     return spec_.channels > color_channels() && spec_.alpha_channel == color_channels();
   }
-  /// Leaves out of PNG and JPEG files what makes no pixels.
+  /// Leaves out of PNG and JPEG files what makes no pixels; checks the framing of all but Radiance HDR.
   BytesView reduced(BytesView encoded) {
+    if (format_ == "openexr") {
+      const ExrHeader header = read_exr_header(encoded);
+      if (!header.fault.empty()) fail(header.fault);
+      if (header.block_bytes > kFewBytes) hold(header.block_bytes);
+    }
     if (format_ != "png" && format_ != "jpeg") return encoded;
     ImageStream stream = format_ == "png" ? png_pixels(encoded) : jpeg_pixels(encoded);
     if (!stream.fault.empty()) fail(stream.fault);
-    if (stream.held_bytes > 0) {
-      static std::mutex turn;  // one such image at a time: what their decoders hold is counted once
-      turn_ = std::unique_lock(turn);
-      take_working_memory(stream.held_bytes, file_, place() + "the image, while it is decoded,");
-    }
+    if (stream.held_bytes > 0) hold(stream.held_bytes);
     reduced_ = std::move(stream.bytes);
     return reduced_;
+  }
+  /// One such image at a time: what their decoders hold is counted once.
+  void hold(std::uint64_t bytes) {
+    static std::mutex turn;
+    turn_ = std::unique_lock(turn);
+    take_working_memory(bytes, file_, place() + "the image, while it is decoded,");
   }
   void check_header(std::uint64_t most_encoded_pixels) const {
     if (spec_.width < 1 || spec_.height < 1 || spec_.depth > 1 || spec_.channels < 1)

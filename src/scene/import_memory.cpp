@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "scene/look.h"
@@ -55,8 +56,10 @@ std::uint64_t geometry_bytes(const LookDocument& document) {
 }  // namespace
 
 void set_import_memory(std::uint64_t bytes) {
-  const std::lock_guard lock(budget().mutex);
-  budget().limit = bytes;
+  Budget& all = budget();
+  const std::lock_guard lock(all.mutex);
+  all.limit = bytes;
+  all.used -= std::exchange(all.working, 0);
 }
 
 ImportShare::ImportShare(std::uint64_t bytes, std::string_view file, std::string_view where) {

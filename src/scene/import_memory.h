@@ -13,7 +13,7 @@ struct LookDocument;
 
 inline constexpr std::uint64_t kImportMemory = std::uint64_t{2} << 30;  // bytes, unless told otherwise
 
-/// Bytes; to be called before anything is read.
+/// Bytes; to be called while nothing is read. What decoders held until then counts no longer.
 void set_import_memory(std::uint64_t bytes);
 
 /// A part of the budget, given back when it goes.

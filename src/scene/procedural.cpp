@@ -23,7 +23,7 @@ namespace {
 [[gnu::always_inline]] inline float gradient(std::uint32_t hash, float x, float y, float z) {
   const std::uint32_t h = hash & 15U;
   const float u = h < 8 ? x : y;
-  const float v = h < 4 ? y : ((h == 12) | (h == 14) ? x : z);
+  const float v = h < 4 ? y : (((h == 12) | (h == 14)) ? x : z);
   return ((h & 1U) != 0 ? -u : u) + ((h & 2U) != 0 ? -v : v);
 }
 

@@ -26,11 +26,14 @@ enum class Mode { none, kill, after, eio, enospc, shortened };
 struct Plan {
   long at = 0;
   Mode mode = Mode::none;
-  std::string count_file;
+  int count_file = -1;
   std::atomic<long> calls{0};
 
   Plan() {
-    if (const char* file = getenv("RELOOK_FAULT_COUNT")) count_file = file;
+    if (const char* file = getenv("RELOOK_FAULT_COUNT")) {
+      const auto real = reinterpret_cast<int (*)(const char*, int, ...)>(dlsym(RTLD_NEXT, "open"));
+      count_file = real(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    }
     const char* text = getenv("RELOOK_FAULT");
     const char* colon = text != nullptr ? strchr(text, ':') : nullptr;
     if (colon == nullptr) return;
@@ -99,15 +102,15 @@ int open_by(const char* name, const char* path, int flags, mode_t mode) {
   return faulty((flags & O_CREAT) != 0, [&] { return real(path, flags, mode); });
 }
 
+/// The file is opened here: it may be out of reach once the program is in its sandbox.
+__attribute__((constructor)) void begin() { plan(); }
+
 __attribute__((destructor)) void write_count() {
   const Plan& p = plan();
-  if (p.count_file.empty()) return;
+  if (p.count_file < 0) return;
   const std::string text = std::to_string(p.calls.load()) + "\n";
-  const int file =
-      next<int (*)(const char*, int, ...)>("open")(p.count_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  if (file < 0) return;
-  (void)!next<ssize_t (*)(int, const void*, size_t)>("write")(file, text.data(), text.size());
-  close(file);
+  (void)!next<ssize_t (*)(int, const void*, size_t)>("write")(p.count_file, text.data(), text.size());
+  close(p.count_file);
 }
 
 }  // namespace

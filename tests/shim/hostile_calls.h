@@ -8,6 +8,7 @@
 #include <sys/ioctl.h>
 #include <sys/mount.h>
 #include <sys/ptrace.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -66,6 +67,12 @@ inline std::vector<HostileCall> hostile_calls() {
   attempt("personality", SYS_personality, 0xFFFFFFFF);
   attempt("setuid", SYS_setuid, getuid());
   attempt("chmod", SYS_fchmodat, AT_FDCWD, "/nowhere", 0777);
+  attempt("fchmod", SYS_fchmod, STDIN_FILENO, 0600);
+  attempt("fchown", SYS_fchown, STDIN_FILENO, getuid(), getgid());
+  attempt("times of a file", SYS_utimensat, AT_FDCWD, "/nowhere", nullptr, 0);
+  attempt("limits of another process", SYS_prlimit64, getppid(), RLIMIT_CPU, nullptr, nullptr);
+  attempt("processors of another process", SYS_sched_setaffinity, getppid(), 0, nullptr);
+  attempt("setpriority", SYS_setpriority, 0, getppid(), 0);
   char letter = 'x';
   attempt("typing into the terminal", SYS_ioctl, STDIN_FILENO, TIOCSTI, &letter);
   return calls;
