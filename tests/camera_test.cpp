@@ -105,9 +105,10 @@ TEST(CameraRay, orthographic_rays_are_parallel) {
   const Camera camera = choose_camera(make_look_document(std::move(imported)), "Lens", 100, 50);
   const CameraRay left = camera_ray(camera, 0, 25), middle = camera_ray(camera, 50, 25);
   EXPECT_EQ(left.direction, middle.direction);
-  EXPECT_EQ(left.origin, Point(-4, 1, 6));
+  EXPECT_EQ(left.origin, Point(-9, 0, 0)) << "from the eye; wide enough for xmag, and so higher than ymag";
   EXPECT_EQ(left.spread, 0);
-  EXPECT_FLOAT_EQ(left.width, 4.0F / 50);
+  EXPECT_FLOAT_EQ(left.width, 9.0F / 50);
+  EXPECT_EQ(left.end, 10);
 }
 
 }  // namespace

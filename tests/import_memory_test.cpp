@@ -130,7 +130,7 @@ TEST_F(ImportMemory, all_images_and_geometry_share_one_budget) {
 
   Json with_mesh = scene_of({"a.png", "b.png"});
   with_mesh["accessors"].push_back({{"componentType", 5126}, {"count", 1 << 18}, {"type", "VEC3"}});
-  with_mesh["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 2}}}, {"indices", 1}});
+  with_mesh["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 2}}}});
   const std::string fuller = write("mesh.gltf", with_mesh.dump());
   EXPECT_EQ(render(fuller, "48M").exit_code, 0);
   expect_refused(render(fuller, "44M"), "mesh.gltf: /images/");
@@ -141,7 +141,7 @@ TEST_F(ImportMemory, accessors_without_data_are_refused_before_columns_are_made)
   Json scene = scene_of({});
   scene["accessors"].push_back({{"componentType", 5126}, {"count", 1 << 22}, {"type", "VEC3"}});
   for (int i = 0; i < 2; ++i)
-    scene["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 2}, {"NORMAL", 2}}}, {"indices", 1}});
+    scene["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 2}, {"NORMAL", 2}}}});
   expect_refused(render(write("zeros.gltf", scene.dump()), "256M"), "zeros.gltf: /meshes");
 
   for (int i = 0; i < 100'000; ++i) scene["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", 2}}}});

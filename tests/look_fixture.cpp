@@ -133,6 +133,7 @@ std::shared_ptr<PyramidStore> small_pyramids() {
 SceneState small_state() {
   LookDocument document = make_look_document(small_gltf());
   Camera camera = choose_camera(document, "Lens", 64, 48);
+  camera.eye = WidePoint(0, 0, 0);  // so that places are those of the world
   return SceneState(std::move(document), std::move(camera), small_pyramids());
 }
 

@@ -283,6 +283,7 @@ TEST(Physics, OpaqueBlockerCastsABlackShadow) {
 TEST(Physics, TransparentBlockersTintTheShadowOneAfterTheOther) {
   SceneBuilder scene = sunlit_plane();
   Json stained = glass(1.5, 0);  // thin: transmission * base, from either side
+  stained["doubleSided"] = true;
   stained["pbrMetallicRoughness"]["baseColorFactor"] = {0.9, 0.5, 0.2, 1};
   stained["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.5;
   SceneBuilder turned = scene;

@@ -1,6 +1,7 @@
 // The oracle's hits: triangles, textures and normals as SHADING.md says under "At a hit".
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "reference_tracer.h"
 #include "scene/displacement.h"
@@ -32,6 +33,55 @@ Vec lift_of(const Mesh& mesh, const WorldTriangle& triangle, double u, double v,
   }
   world.multDirMatrix(lift, in_world);
   return in_world;
+}
+
+struct AxisOfMap {
+  Vec along_u;  // object space
+  bool is_mirrored;
+};
+
+double angle_at(const Mesh& mesh, const std::array<std::uint32_t, 3>& t, std::size_t corner, const Vec& n) {
+  const Vec p(mesh.positions[t[corner]]);
+  Vec a = Vec(mesh.positions[t[(corner + 1) % 3]]) - p, b = Vec(mesh.positions[t[(corner + 2) % 3]]) - p;
+  a = (a - n * n.dot(a)).normalized();
+  b = (b - n * n.dot(b)).normalized();
+  return std::acos(std::clamp(a.dot(b), -1.0, 1.0));
+}
+
+/// Of one triangle; none where it has no area in texture coordinates.
+std::optional<AxisOfMap> flat_frame(const Mesh& mesh, std::size_t set, const std::array<std::uint32_t, 3>& t) {
+  const Imath::V2d d1 = Imath::V2d(mesh.uv[set][t[1]]) - Imath::V2d(mesh.uv[set][t[0]]),
+                   d2 = Imath::V2d(mesh.uv[set][t[2]]) - Imath::V2d(mesh.uv[set][t[0]]);
+  const Vec e1 = Vec(mesh.positions[t[1]]) - Vec(mesh.positions[t[0]]),
+            e2 = Vec(mesh.positions[t[2]]) - Vec(mesh.positions[t[0]]);
+  const double det = d1.cross(d2);
+  if (det == 0) return std::nullopt;
+  return AxisOfMap{(e1 * d2.y - e2 * d1.y) / det, det < 0};
+}
+
+/// MikkTSpace, all triangles against all: at each corner the mean over the triangles that have the same vertex there and
+/// the same handedness, weighted by their angles; between the corners interpolated.
+std::optional<AxisOfMap> smooth_frame(const Mesh& mesh, std::size_t set, std::uint32_t primitive, double u, double v) {
+  const auto& own = mesh.triangles[primitive];
+  const std::optional<AxisOfMap> flat = flat_frame(mesh, set, own);
+  if (!flat || mesh.normals.empty()) return flat ? std::optional(AxisOfMap{flat->along_u, !flat->is_mirrored}) : flat;
+  const std::array<double, 3> weights{1 - u - v, u, v};
+  Vec sum(0, 0, 0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Vec n(mesh.normals[own[c]]);
+    Vec tangent(0, 0, 0);
+    for (const auto& t : mesh.triangles)
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (mesh.positions[t[i]] != mesh.positions[own[c]] || mesh.normals[t[i]] != mesh.normals[own[c]] ||
+            mesh.uv[set][t[i]] != mesh.uv[set][own[c]])
+          continue;
+        const std::optional<AxisOfMap> other = flat_frame(mesh, set, t);
+        if (!other || other->is_mirrored != flat->is_mirrored) continue;
+        tangent += (other->along_u - n * n.dot(other->along_u)).normalized() * angle_at(mesh, t, i, n);
+      }
+    sum += tangent.normalized() * weights[c];
+  }
+  return AxisOfMap{sum, !flat->is_mirrored};
 }
 
 }  // namespace
@@ -110,21 +160,24 @@ Imath::V4d ReferenceTracer::texture(const Surface& s, Slot which) const {
 Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) const {
   const TextureSlot& slot = s.material->slot(which);
   if (slot.kind == TextureKind::none) return s.n;
-  const auto& [i, j, k] = s.mesh->triangles[s.triangle->primitive];
-  const auto& uv = s.mesh->uv[slot.texcoord];
-  const Imath::V2d d1 = Imath::V2d(uv[j] - uv[i]), d2 = Imath::V2d(uv[k] - uv[i]);
-  const Vec e1 = s.triangle->b - s.triangle->a, e2 = s.triangle->c - s.triangle->a;
-  const double det = d1.cross(d2);
-  if (det == 0) return s.n;
-  // glTF: +X of the map runs along u, +Y against v (images are stored top row first).
-  const Vec along_u = (e1 * d2.y - e2 * d1.y) / det, against_v = (e1 * d2.x - e2 * d1.x) / det;
-  const Vec tangent = (along_u - s.n * s.n.dot(along_u)).normalized();
-  Vec bitangent = s.n.cross(tangent);
-  if (bitangent.dot(against_v) < 0) bitangent = -bitangent;
+  const std::optional<AxisOfMap> frame = smooth_frame(*s.mesh, slot.texcoord, s.triangle->primitive, s.u, s.v);
+  if (!frame) return s.n;
+  const Imath::M44d world(s.object->to_world);
+  Vec along_u;
+  world.multDirMatrix(frame->along_u, along_u);
+  const Vec front = s.inside ? -s.n : s.n;
+  const Vec of_mesh = (along_u - front * front.dot(along_u)).normalized();
+  // +Y of a map runs against v: images are stored top row first.
+  const bool turns = (world.determinant() < 0) != frame->is_mirrored;
+  const Vec against_v = front.cross(of_mesh) * (turns ? -1.0 : 1.0);
+  // A step along the map's u is one along u and v of the mesh, by the inverse of KHR_texture_transform.
+  const double cosine = std::cos(double{slot.rotation}), sine = std::sin(double{slot.rotation});
+  const Vec tangent = (of_mesh * (cosine / slot.scale.x) - against_v * (sine / slot.scale.y)).normalized();
+  Vec bitangent = front.cross(tangent);
+  if (bitangent.dot(of_mesh * (sine / slot.scale.x) + against_v * (cosine / slot.scale.y)) < 0) bitangent = -bitangent;
   const Imath::V4d texel = texture(s, which);
-  const double side = s.inside ? -1 : 1;  // seen from behind, the relief is what it is from the front
-  const Vec map((2 * texel.x - 1) * scale * side, (2 * texel.y - 1) * scale * side, 2 * texel.z - 1);
-  const Vec bent = (tangent * map.x + bitangent * map.y + s.n * map.z).normalized();
+  const Vec map((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, 2 * texel.z - 1);
+  const Vec bent = (tangent * map.x + bitangent * map.y + front * map.z).normalized() * (s.inside ? -1.0 : 1.0);
   return bent.dot(s.ng) > 0 ? bent : s.n;
 }
 

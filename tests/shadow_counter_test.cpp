@@ -108,6 +108,7 @@ SceneState levels_scene(bool with_glass) {
   Json plastic = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
   const int dull = scene.material("Dull", plastic);
   plastic["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+  plastic["doubleSided"] = true;
   const int glass = scene.material("Glass", plastic);
   const int slab = scene.mesh("Slab", box_mesh(Point(0.8F, 0.05F, 0.7F)), dull);
   const int pane = scene.mesh("Pane", box_mesh(Point(0.9F, 0.04F, 0.9F)), glass);

@@ -8,11 +8,11 @@
 
 namespace relook {
 
-/// The spheres inside a large ball, so that every ray ends on a surface and its segment is known.
+/// The spheres inside a large ball turned inside out, so that every ray ends on a surface and its segment is known.
 [[nodiscard]] inline SceneState closed_room() {
   SceneState state = spheres_scene(80, 60);
   apply_edit(state,
-             parsed_edit(R"([{"op": "add", "path": "/nodes/Room", "value": {"mesh": "Ball", "scale": [20, 20, 20]}}])"),
+             parsed_edit(R"([{"op": "add", "path": "/nodes/Room", "value": {"mesh": "Ball", "scale": [-20, 20, 20]}}])"),
              "room", ".");
   return state;
 }

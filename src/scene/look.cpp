@@ -130,6 +130,18 @@ Json active_scene(const Json& gltf) {
   return scene;
 }
 
+/// Glass with a volume, whose back faces are seen through its front ones. Of values that nothing has checked yet.
+bool is_solid(const Json& material) {
+  const auto is_positive = [&](const char* pointer) {
+    const Json::json_pointer at(pointer);
+    return material.contains(at) && material[at].is_number() && material[at].get<double>() > 0;
+  };
+  const Json::json_pointer model("/extras/relook/model");
+  if (material.contains(model) && material[model] == "blinn-phong") return is_positive("/extras/relook/refraction");
+  return is_positive("/extensions/KHR_materials_volume/thicknessFactor") &&
+         is_positive("/extensions/KHR_materials_transmission/transmissionFactor");
+}
+
 }  // namespace
 
 void fill_defaults(Section section, Json& value) {
@@ -141,6 +153,7 @@ void fill_defaults(Section section, Json& value) {
     if (extras.is_object() && (!extras.contains("relook") || extras["relook"].is_object()))
       extras["relook"]["model"] = "unlit";
   }
+  if (section == Section::materials && !value.contains("doubleSided") && is_solid(value)) value["doubleSided"] = true;
   if (section == Section::lights && value.value("type", Json()) == "spot" && !value.contains("spot"))
     value["spot"] = Json::object();
   if (section == Section::nodes && value.contains("matrix")) {
@@ -172,7 +185,11 @@ LookDocument make_look_document(ImportedGltf imported) {
     const auto section = static_cast<Section>(s);
     if (section == Section::nodes) continue;
     const Json& items = gltf_array(gltf, section);
-    for (std::size_t i = 0; i < items.size(); ++i) add_entity(document, section, i, items[i]);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      Json item = items[i];
+      if (section == Section::materials && item.is_object() && is_solid(item)) item.erase("doubleSided");
+      add_entity(document, section, i, std::move(item));
+    }
   }
   for (std::size_t index : active) {
     Json node = gltf["nodes"][index];

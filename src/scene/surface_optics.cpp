@@ -52,12 +52,6 @@ SurfaceOptics blinn_phong_optics(const Material& m) {
   return optics;
 }
 
-/// What may be a solid of glass is seen from the inside, too: whether it is one now does not matter, so that an edit of
-/// its transmission moves no surface.
-bool culls_back_faces(const Material& m) {
-  return !m.double_sided && m.thickness == 0 && m.model != IlluminationModel::blinn_phong;
-}
-
 }  // namespace
 
 SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
@@ -66,7 +60,7 @@ SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
   if (material.model == IlluminationModel::blinn_phong) optics = blinn_phong_optics(material);
   optics.transparent = optics.transparent || lets_light_past(material, mesh);
   optics.cut_out = material.alpha_mode == AlphaMode::mask;
-  optics.culls_back = culls_back_faces(material);
+  optics.culls_back = !material.double_sided;
   optics.passes_light = optics.refracts || optics.transparent;
   optics.ior = optics.refracts ? std::max(material.ior, 1.0F) : 1;
   return optics;

@@ -20,7 +20,7 @@ struct SurfaceOptics {
   bool dielectric_cut = false;  // the Fresnel terms of its branches count towards the cut-off
   bool passes_light = false;    // shadow segments are tinted, not blocked
   bool cut_out = false;         // alpha MASK: holes in visibility
-  bool culls_back = false;      // single-sided and never a solid: no ray meets its back faces
+  bool culls_back = false;      // single-sided: no ray meets its back faces
   float ior = 1;                // 1 unless refracts
 
   [[nodiscard]] bool spawns() const { return reflects || coat_reflects || refracts || transparent; }

@@ -23,7 +23,7 @@ class Expander {
     if (is_kept_) {
       grower_.set_hit(index, node.object(), hits.front());
     } else {
-      const Meeting meeting = rays_.meeting(node.object(), grower_.whole_ray(ray));
+      const Meeting meeting = rays_.meeting(node.object(), ray_of(ray));  // what it goes on behind was found before
       grower_.set_hit(index, node.object(), meeting.hit);
       grower_.block().nodes[index].t = meeting.t;
     }

@@ -41,11 +41,12 @@ class Grower {
   }
 
   /// The ray as it is traced: behind the hit that it goes straight on from.
-  [[nodiscard]] Ray whole_ray(const SpawnedRay& ray) const {
+  [[nodiscard]] Ray whole_ray(const SpawnedRay& ray, GrowCounters& counters) const {
     Ray whole = ray_of(ray);
-    if (ray.goes_on() && std::isnan(ray.behind.t))
-      whole.behind.t =
-          Tracer::distance(g_.objects->of(ray.behind.object), {ray.origin, ray.direction}, ray.behind.hit.primitive);
+    if (!ray.goes_on() || !std::isnan(ray.behind.t)) return whole;
+    ++counters.object_rays;
+    whole.behind.t =
+        Tracer::distance(g_.objects->of(ray.behind.object), {ray.origin, ray.direction}, ray.behind.hit.primitive);
     return whole;
   }
 
@@ -131,7 +132,7 @@ class Grower {
   std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent, GrowCounters& counters) {
     const std::uint32_t index = append(ray, parent);
     ++counters.ray_updates;
-    trace_from(index, Tracer::intersect(*g_.level, whole_ray(ray)), counters);
+    trace_from(index, Tracer::intersect(*g_.level, whole_ray(ray, counters)), counters);
     return index;
   }
 

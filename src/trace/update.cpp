@@ -73,14 +73,14 @@ class Updater {
     Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
     if (ray.goes_on()) {  // behind what it comes from?
-      segment.behind = grower_.whole_ray(ray).behind;
+      segment.behind = grower_.whole_ray(ray, counters_).behind;
       segment.t_min = ray.start;
       meeting = Tracer::intersect(change_.moved_after, segment);
       if (meeting.object.is_none()) return false;
     }
     if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
       ++counters_.ray_updates;
-      const Meeting nearest = Tracer::intersect(*grower_.grow().level, grower_.whole_ray(ray));
+      const Meeting nearest = Tracer::intersect(*grower_.grow().level, grower_.whole_ray(ray, counters_));
       if (nearest.object == node.object() && nearest.hit == block.nodes[index].hit) return false;
       if (!nearest.object.is_none()) return regrow(index, node, nearest);
     }
