@@ -94,6 +94,7 @@ TEST(Table1, geometric_rows) {
       {"/nodes/Sun/rotation", "[0, 0, 0, 1]", "[1, 0, 0, 0]"},
       {"/nodes/Lamp/extensions/KHR_node_visibility/visible", "true", "false"},
       {"/lights/Bulb/type", "\"point\"", "\"spot\""},
+      {"/materials/Gold/doubleSided", "false", "true"},
       {"/nodes/Sphere/extras", "{}", R"({"relook": {"displacement": {"texture": "Bumps"}}})"},
       {"/nodes/Sphere/extras", R"({"relook": {"displacement": {"texture": "Bumps", "scale": 1}}})",
        R"({"relook": {"displacement": {"texture": "Bumps", "scale": 2}}})"},
@@ -144,7 +145,11 @@ TEST(Table1, another_material_counts_as_the_difference_of_the_two) {
   const auto assign = [](const char* material) {
     return setting("/meshes/Slab/primitives/0/material", (std::string("\"") + material + "\"").c_str());
   };
-  EXPECT_EQ(classification_of("[]", assign("Glass")).change, ChangeClass::optical);
+  EXPECT_EQ(classification_of("[]", assign("Glass")).change, ChangeClass::geometric) << "glass has back faces";
+  EXPECT_EQ(classification_of(R"([{"op": "replace", "path": "/materials/Glass/doubleSided", "value": false}])",
+                              assign("Glass"))
+                .change,
+            ChangeClass::optical);
   EXPECT_EQ(
       classification_of(assign("Gold"), R"([{"op": "remove", "path": "/meshes/Slab/primitives/0/material"}])").change,
       ChangeClass::color);

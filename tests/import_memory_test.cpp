@@ -134,7 +134,7 @@ TEST_F(ImportMemory, all_images_and_geometry_share_one_budget) {
   const std::string fuller = write("mesh.gltf", with_mesh.dump());
   EXPECT_EQ(render(fuller, "48M").exit_code, 0);
   expect_refused(render(fuller, "44M"), "mesh.gltf: /images/");
-  expect_refused(render(fuller, "2M"), "mesh.gltf: /meshes: the geometry takes 10 MiB");
+  expect_refused(render(fuller, "2M"), "mesh.gltf: /meshes: the geometry takes 20 MiB");
 }
 
 TEST_F(ImportMemory, accessors_without_data_are_refused_before_columns_are_made) {

@@ -119,6 +119,7 @@ void change_geometry(Change& change, const Json& look, Dice& dice) {
     case 6:
       return change.set(look, "/meshes/" + ball + "/primitives/0/material", dice.one_of(kMaterials));
     case 7:
+      if (dice.chance(0.4)) return change.set(look, material + "/doubleSided", dice.chance(0.5));
       return change.set(look, material + "/alphaMode",
                         dice.one_of(std::vector<std::string>{"OPAQUE", "MASK", "BLEND"}));
     default:

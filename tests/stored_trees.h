@@ -8,12 +8,16 @@
 
 namespace relook {
 
-/// The spheres inside a large ball turned inside out, so that every ray ends on a surface and its segment is known.
+/// The spheres inside a large ball that has an inside, so that every ray ends on a surface and its segment is known.
 [[nodiscard]] inline SceneState closed_room() {
   SceneState state = spheres_scene(80, 60);
-  apply_edit(state,
-             parsed_edit(R"([{"op": "add", "path": "/nodes/Room", "value": {"mesh": "Ball", "scale": [-20, 20, 20]}}])"),
-             "room", ".");
+  Json edit = Json::array();
+  edit.push_back(
+      {{"op", "add"}, {"path", "/nodes/Room"}, {"value", {{"mesh", "Ball"}, {"scale", {20, 20, 20}}}}});
+  for (const auto& material : state.document().look.at("materials").items())
+    edit.push_back(
+        {{"op", "replace"}, {"path", "/materials/" + escape_token(material.key()) + "/doubleSided"}, {"value", true}});
+  apply_edit(state, parsed_edit(edit.dump().c_str()), "room", ".");
   return state;
 }
 
