@@ -29,6 +29,7 @@ export TMPDIR="$memory"
 # Libraries that are not ours keep some memory to the end; leaks there are not what is looked for.
 export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0
 export UBSAN_OPTIONS=print_stacktrace=1
+rm -rf "$work/seeds"
 python3 tests/fuzz/seeds.py "$work/seeds"
 most_bytes=8192
 
@@ -39,7 +40,7 @@ if [ "$seconds" = keep ]; then
     mkdir -p "$work/kept_$target" "$work/found/$target" "$kept"
     "build/asan/fuzz_$target" -set_cover_merge=1 -max_len=$most_bytes -timeout=10 "$work/kept_$target" "$kept" "$work/seeds/$target" \
       "$work/found/$target" >"$work/keep_$target.log" 2>&1
-    python3 tests/fuzz/choose.py "$work/kept_$target" "$kept"
+    python3 tests/fuzz/choose.py "$work/kept_$target" "$work/seeds/$target" "$kept"
   done
   exit 0
 fi
