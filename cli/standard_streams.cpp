@@ -25,7 +25,7 @@ void open_closed_descriptors() {
 void require_one_standard_input(const Arguments& arguments) {
   const Verb verb = arguments.verb;
   const bool has_journals = verb == Verb::replay || verb == Verb::plan || verb == Verb::inspect;
-  const std::size_t first = verb == Verb::inspect ? 0 : 1;
+  const std::ptrdiff_t first = verb == Verb::inspect ? 0 : 1;
   std::ptrdiff_t uses = arguments.journal == kStandardInput ? 1 : 0;
   if (has_journals)
     uses += std::ranges::count(arguments.inputs.begin() + first, arguments.inputs.end(), kStandardInput);

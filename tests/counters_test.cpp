@@ -107,9 +107,9 @@ TreeSize below_material(const TreeNode& before, const TreeNode& after, const Sce
   const bool changed = scene.material(scene.objects[after.object].material).name == material;
   for (const auto& [branch, child] : after.children) {
     const auto old = std::find_if(before.children.begin(), before.children.end(),
-                                  [&, kind = branch](const auto& pair) { return pair.first == kind; });
+                                  [&, kind = branch](const TreeChild& other) { return other.branch == kind; });
     const bool goes_as_before = old != before.children.end() && !(changed && bends && branch == Branch::refraction);
-    size += goes_as_before ? below_material(old->second, child, scene, material, bends) : size_of(child);
+    size += goes_as_before ? below_material(old->node, child, scene, material, bends) : size_of(child);
   }
   return size;
 }
@@ -201,7 +201,7 @@ struct GeometricOracle {
     }
     ASSERT_EQ(before.children.size(), after.children.size());
     for (std::size_t i = 0; i < before.children.size(); ++i)
-      visit(here, before.children[i].second, after.children[i].second, allowance);
+      visit(here, before.children[i].node, after.children[i].node, allowance);
   }
 };
 

@@ -105,7 +105,7 @@ struct GeometricCount {
     }
     ASSERT_EQ(before.children.size(), after.children.size());
     for (std::size_t i = 0; i < before.children.size(); ++i)
-      visit(here, before.children[i].second, after.children[i].second);
+      visit(here, before.children[i].node, after.children[i].node);
   }
 };
 

@@ -29,6 +29,7 @@ export TMPDIR="$memory"
 # Libraries that are not ours keep some memory to the end; leaks there are not what is looked for.
 export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=0
 export UBSAN_OPTIONS=print_stacktrace=1
+rm -rf "$work/seeds"
 python3 tests/fuzz/seeds.py "$work/seeds"
 most_bytes=8192
 
@@ -39,7 +40,7 @@ if [ "$seconds" = keep ]; then
     mkdir -p "$work/kept_$target" "$work/found/$target" "$kept"
     "build/asan/fuzz_$target" -set_cover_merge=1 -max_len=$most_bytes -timeout=10 "$work/kept_$target" "$kept" "$work/seeds/$target" \
       "$work/found/$target" >"$work/keep_$target.log" 2>&1
-    python3 tests/fuzz/choose.py "$work/kept_$target" "$kept"
+    python3 tests/fuzz/choose.py "$work/kept_$target" "$work/seeds/$target" "$kept"
   done
   exit 0
 fi
@@ -67,7 +68,7 @@ printf '%-8s %10s %8s %8s %9s\n' target runs edges crashes time-outs
 for target in $targets; do
   log="$work/$target.log"
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -1)
-  edges=$(grep -o 'cov: [0-9]*' "$log" | tail -1 | cut -d' ' -f2)
+  edges=$(grep -ao 'cov: [0-9]*' "$log" | tail -1 | cut -d' ' -f2)
   slow=$(find "$work/crashes/$target" -name 'timeout-*' | wc -l)
   crashes=$(find "$work/crashes/$target" -type f ! -name 'timeout-*' ! -name 'slow-unit-*' | wc -l)
   printf '%-8s %10s %8s %8d %9d\n' "$target" "${runs:-?}" "${edges:-?}" "$crashes" "$slow"

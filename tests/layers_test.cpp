@@ -39,7 +39,7 @@ TEST(ExactSum, hits_every_total) {
   std::mt19937 random(20260101);
   const auto any_float = [&] { return std::bit_cast<float>(static_cast<std::uint32_t>(random())); };
   for (int round = 0; round < 200'000; ++round) {
-    std::vector<float> terms(2 + round % 5);
+    std::vector<float> terms(static_cast<std::size_t>(2 + round % 5));
     for (float& term : terms)
       term = round % 3 == 0 ? any_float() : std::ldexp(any_float() > 0 ? 1.37F : -0.91F, round % 40 - 20);
     const float total = round % 2 == 0 ? any_float() : std::ldexp(1.001F, round % 37 - 18);

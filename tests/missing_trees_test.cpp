@@ -42,7 +42,7 @@ void for_each_pair(const Image& before, std::size_t lights_before, const Image& 
 
 bool faces_a_light(const TreeNode& node) {
   return std::ranges::any_of(node.lights, [](const TreeLight& l) { return l.state != ShadowState::facing_away; }) ||
-         std::ranges::any_of(node.children, [](const auto& child) { return faces_a_light(child.second); });
+         std::ranges::any_of(node.children, [](const auto& child) { return faces_a_light(child.node); });
 }
 
 bool names(const TreeNode& node, const Scene& scene, std::string_view of_node) {
@@ -51,7 +51,7 @@ bool names(const TreeNode& node, const Scene& scene, std::string_view of_node) {
   if (is_it(node.object)) return true;
   for (const TreeLight& light : node.lights)
     if (std::ranges::any_of(light.filters, [&](const TreeCrossing& f) { return is_it(f.object); })) return true;
-  return std::ranges::any_of(node.children, [&](const auto& child) { return names(child.second, scene, of_node); });
+  return std::ranges::any_of(node.children, [&](const auto& child) { return names(child.node, scene, of_node); });
 }
 
 void expect_full_frame(const Replayer& replayer) {
@@ -123,8 +123,8 @@ std::uint64_t object_rays(const TreeNode& before, const TreeNode& after, const S
   for (const auto& [branch, child] : before.children) {
     if (bends && branch == Branch::refraction) continue;
     const auto now =
-        std::ranges::find_if(after.children, [&, b = branch](const auto& pair) { return pair.first == b; });
-    if (now != after.children.end()) rays += object_rays(child, now->second, scene, material);
+        std::ranges::find_if(after.children, [&, b = branch](const TreeChild& other) { return other.branch == b; });
+    if (now != after.children.end()) rays += object_rays(child, now->node, scene, material);
   }
   return rays;
 }

@@ -74,7 +74,7 @@ TEST(Rebuilt, color_trees_are_those_of_tiles_with_other_ray_trees) {
   const auto names = [&](const TreeNode& node, const auto& self) -> bool {
     if (node.missed) return false;
     if (scene.objects[node.object].material == matte) return true;
-    return std::ranges::any_of(node.children, [&](const auto& child) { return self(child.second, self); });
+    return std::ranges::any_of(node.children, [&](const auto& child) { return self(child.node, self); });
   };
   for (std::size_t tile = 0; tile < before.trees.size(); ++tile) {
     bool is_changed = false;

@@ -491,7 +491,7 @@ TEST_F(RunFolderTest, a_wedge_as_a_whole_has_the_files_of_its_last_frame) {
 TEST_F(RunFolderTest, notes_cut_in_their_first_line_are_still_ours) {
   ASSERT_EQ(replay("run", {"--report", "none"}).exit_code, 0);
   const std::string notes(text_of(read_file(at("run/progress.jsonl"))));
-  for (const std::size_t bytes : {0, 1, 20, 33, 40, 200}) {
+  for (const std::size_t bytes : std::vector<std::size_t>{0, 1, 20, 33, 40, 200}) {
     fs::remove_all(at("cut"));
     write_text("cut/progress.jsonl", notes.substr(0, bytes));
     EXPECT_EQ(replay("cut", {"--steps", "0-1"}).exit_code, 0) << bytes;

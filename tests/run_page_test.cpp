@@ -68,7 +68,7 @@ TEST(RunPage, a_page_of_8000_steps_is_small_and_opens_within_two_seconds) {
   expected.update(
       {{"seconds", 2}, {"rows", 8001}, {"mixes", false}, {"words", "material Paint: metallic becomes 0.8"}});
   expected["pixels"] = Json::array();
-  for (const std::size_t entry : {8000, 0, 1, 255, 256, 4099, 7999})
+  for (const std::size_t entry : std::vector<std::size_t>{8000, 0, 1, 255, 256, 4099, 7999})
     expected["pixels"].push_back(run.expected_pixel(entry, 97 + entry % 64, 5));
   use_in_browser("long_page.py", folder / "run", expected, folder);
 }

@@ -33,7 +33,7 @@ struct Reader {
         light.filters.push_back({words[word++], hits[hit++]});
     }
     for (std::uint32_t branch = 0; branch < kBranches; ++branch)
-      if ((node.flags >> branch & 1U) != 0) node.children.emplace_back(static_cast<Branch>(branch), this->node());
+      if ((node.flags >> branch & 1U) != 0) node.children.push_back({static_cast<Branch>(branch), this->node()});
     return node;
   }
 };
@@ -86,7 +86,7 @@ bool same_tree(const TreeNode& a, const Scene& scene_a, const TreeNode& b, const
         return false;
   }
   for (std::size_t i = 0; i < a.children.size(); ++i)
-    if (!same_tree(a.children[i].second, scene_a, b.children[i].second, scene_b)) return false;
+    if (!same_tree(a.children[i].node, scene_a, b.children[i].node, scene_b)) return false;
   return true;
 }
 

@@ -21,12 +21,19 @@ struct TreeLight {
   std::vector<std::uint32_t> transparent, counters;  // of a blocked light, where shadows are counted
 };
 
+struct TreeChild;
+
 struct TreeNode {
   bool missed = false;
   std::uint32_t object = 0, flags = 0;
   Hit hit;
-  std::vector<TreeLight> lights;                      // in light order
-  std::vector<std::pair<Branch, TreeNode>> children;  // in the order of Branch
+  std::vector<TreeLight> lights;    // in light order
+  std::vector<TreeChild> children;  // in the order of Branch
+};
+
+struct TreeChild {
+  Branch branch = Branch::reflection;
+  TreeNode node;
 };
 
 /// The tree of one sample. `lights`: living lights of the scene.
