@@ -359,8 +359,8 @@ TEST_F(CacheFolder, caches_of_equal_arithmetic_are_exchangeable_and_others_say_w
 TEST_F(CacheFolder, the_version_says_what_bits_depend_on) {
   const Arithmetic& own = own_arithmetic();
   const std::string version = relook({"--version"}).output;
-  EXPECT_TRUE(version.starts_with("relook 0.1.0\narithmetic " + std::to_string(own.version) + ", Embree " +
-                                  own.embree + ", " + own.libc + ", " + own.instructions + "\ncache format 4\n"))
+  EXPECT_TRUE(version.starts_with("relook 0.1.0\narithmetic " + std::to_string(own.version) + ", Embree " + own.embree +
+                                  ", " + own.libc + ", " + own.instructions + "\ncache format 4\n"))
       << version;
   EXPECT_NE(own.embree, "none");
 }

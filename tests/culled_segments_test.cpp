@@ -133,8 +133,7 @@ CountedStep counted_step(const std::string& node, const char* edit, std::size_t 
   add_place(scene, node, nullptr, places.after);
   GeometricCount count{scene, triangles, places, bits > 0, {}};
   const std::vector<TreeNode> after = trees_by_pixel(replayer);
-  for (std::size_t pixel = 0; pixel < before.size(); ++pixel)
-    count.visit(Vec(0, 0, 0), before[pixel], after[pixel]);
+  for (std::size_t pixel = 0; pixel < before.size(); ++pixel) count.visit(Vec(0, 0, 0), before[pixel], after[pixel]);
   step.brute = count.culled;
   return step;
 }

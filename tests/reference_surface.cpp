@@ -22,7 +22,8 @@ T mixed(const T& a, const T& b, const T& c, double u, double v) {
 }
 
 /// What SHADING.md calls lift, in the world.
-Vec lift_of(const Mesh& mesh, const WorldTriangle& triangle, double u, double v, bool inside, const Imath::M44d& world) {
+Vec lift_of(const Mesh& mesh, const WorldTriangle& triangle, double u, double v, bool inside,
+            const Imath::M44d& world) {
   const auto& vertices = mesh.triangles[triangle.primitive];
   const std::array<double, 3> weights{1 - u - v, u, v};
   Vec p(0, 0, 0), lift(0, 0, 0), in_world;
@@ -59,8 +60,8 @@ std::optional<AxisOfMap> flat_frame(const Mesh& mesh, std::size_t set, const std
   return AxisOfMap{(e1 * d2.y - e2 * d1.y) / det, det < 0};
 }
 
-/// MikkTSpace, all triangles against all: at each corner the mean over the triangles that have the same vertex there and
-/// the same handedness, weighted by their angles; between the corners interpolated.
+/// MikkTSpace, all triangles against all: at each corner the mean over the triangles that have the same vertex there
+/// and the same handedness, weighted by their angles; between the corners interpolated.
 std::optional<AxisOfMap> smooth_frame(const Mesh& mesh, std::size_t set, std::uint32_t primitive, double u, double v) {
   const auto& own = mesh.triangles[primitive];
   const std::optional<AxisOfMap> flat = flat_frame(mesh, set, own);

@@ -12,8 +12,7 @@ namespace relook {
 [[nodiscard]] inline SceneState closed_room() {
   SceneState state = spheres_scene(80, 60);
   Json edit = Json::array();
-  edit.push_back(
-      {{"op", "add"}, {"path", "/nodes/Room"}, {"value", {{"mesh", "Ball"}, {"scale", {20, 20, 20}}}}});
+  edit.push_back({{"op", "add"}, {"path", "/nodes/Room"}, {"value", {{"mesh", "Ball"}, {"scale", {20, 20, 20}}}}});
   for (const auto& material : state.document().look.at("materials").items())
     edit.push_back(
         {{"op", "replace"}, {"path", "/materials/" + escape_token(material.key()) + "/doubleSided"}, {"value", true}});

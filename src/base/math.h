@@ -1,5 +1,6 @@
 // Role names over Imath: what transforms differently has a different name. All lengths in metres, angles in radians,
-// colours linear Rec.709. Points are relative to the camera's eye or to an object, unless they are wide. Imath multiplies row vectors: `point * matrix`.
+// colours linear Rec.709. Points are relative to the camera's eye or to an object, unless they are wide. Imath
+// multiplies row vectors: `point * matrix`.
 #pragma once
 #include <ImathBox.h>
 #include <ImathColor.h>

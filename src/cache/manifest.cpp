@@ -172,17 +172,17 @@ void check_format(const Json& document) {
 
 Json camera_json(const Camera& camera) {
   Json json{{"name", camera.name},
-          {"node", camera.node},
-          {"orthographic", camera.orthographic},
-          {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
-          {"right", vector_json(camera.right)},
-          {"up", vector_json(camera.up)},
-          {"forward", vector_json(camera.forward)},
-          {"half_width", camera.half_width},
-          {"half_height", camera.half_height},
-          {"near", camera.near},
-          {"width", camera.width},
-          {"height", camera.height}};
+            {"node", camera.node},
+            {"orthographic", camera.orthographic},
+            {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
+            {"right", vector_json(camera.right)},
+            {"up", vector_json(camera.up)},
+            {"forward", vector_json(camera.forward)},
+            {"half_width", camera.half_width},
+            {"half_height", camera.half_height},
+            {"near", camera.near},
+            {"width", camera.width},
+            {"height", camera.height}};
   if (std::isfinite(camera.far)) json["far"] = camera.far;
   return json;
 }

@@ -92,8 +92,7 @@ ChangeClass material_change_class(const Material& before, const Material& after,
   if (cut_out_changes(before, after)) return ChangeClass::geometric;
   const SurfaceOptics optics = surface_optics(after, mesh), optics_before = surface_optics(before, mesh);
   if (optics_before.culls_back != optics.culls_back) return ChangeClass::geometric;
-  if (optics_before != optics || bends_normals_otherwise(before, after, optics))
-    return ChangeClass::optical;
+  if (optics_before != optics || bends_normals_otherwise(before, after, optics)) return ChangeClass::optical;
   return ChangeClass::color;
 }
 

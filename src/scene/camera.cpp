@@ -135,7 +135,8 @@ Camera placed_camera(const LookDocument& document, std::string_view shown_name, 
   const auto number = [&](const char* key, double low, double high) {
     return number_at(lens, key, low, high, document, pointer);
   };
-  const double half_height = camera.orthographic ? number("ymag", 1e-9, 1e9) : std::tan(number("yfov", 1e-4, 3.1416) / 2);
+  const double half_height =
+      camera.orthographic ? number("ymag", 1e-9, 1e9) : std::tan(number("yfov", 1e-4, 3.1416) / 2);
   double half_width = half_height * width / height;
   if (camera.orthographic && lens.contains("xmag")) half_width = number("xmag", 1e-9, 1e9);
   if (!camera.orthographic && lens.contains("aspectRatio")) half_width = half_height * number("aspectRatio", 1e-4, 1e4);

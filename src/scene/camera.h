@@ -19,7 +19,7 @@ struct Camera {
   float half_width = 1, half_height = 1;  // of the image plane at distance 1 (perspective), in metres (orthographic)
   float near = 0;                         // metres along forward: nothing nearer is seen
   float far = std::numeric_limits<float>::infinity();  // nor anything beyond
-  std::uint32_t width = 0, height = 0;    // pixels
+  std::uint32_t width = 0, height = 0;                 // pixels
 };
 
 struct CameraRay {

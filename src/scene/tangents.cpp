@@ -85,8 +85,7 @@ CornerTangents derive_tangents(const Mesh& mesh, std::uint8_t texcoord) {
       result.corners[t][i] = place;
       if (!has_axis[t]) continue;
       const Wide normal(mesh.normals[triangle[i]]);
-      const double angle =
-          angle_between(across(p[(i + 1) % 3] - p[i], normal), across(p[(i + 2) % 3] - p[i], normal));
+      const double angle = angle_between(across(p[(i + 1) % 3] - p[i], normal), across(p[(i + 2) % 3] - p[i], normal));
       sums[place] += across(axis.along_u, normal) * angle;
     }
   }

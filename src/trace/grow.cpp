@@ -73,8 +73,7 @@ void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, s
   stop_if_interrupted();
   std::vector<Meeting> meetings;
   meetings.reserve(primaries.size());
-  for (const SpawnedRay& ray : primaries)
-    meetings.push_back(Tracer::intersect(*grow.level, ray_of(ray)));
+  for (const SpawnedRay& ray : primaries) meetings.push_back(Tracer::intersect(*grow.level, ray_of(ray)));
   counters.ray_updates += primaries.size();
   const auto first_node = static_cast<std::uint32_t>(block.nodes.size());
   for (std::size_t k = 0; k < primaries.size(); ++k) {

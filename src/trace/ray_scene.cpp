@@ -38,8 +38,7 @@ std::uint64_t tie_key(const Object& object, const Box& bounds) {
   constexpr unsigned kSizeBits = 16, kDroppedBits = 15;  // exponent and 8 bits of a positive float
   float size = 0;
   for (int axis = 0; axis < 3 && !bounds.isEmpty(); ++axis)
-    for (int i = 0; i < 3; ++i)
-      size += (bounds.max[i] - bounds.min[i]) * std::fabs(object.to_world[i][axis]);
+    for (int i = 0; i < 3; ++i) size += (bounds.max[i] - bounds.min[i]) * std::fabs(object.to_world[i][axis]);
   const std::uint64_t rank = std::bit_cast<std::uint32_t>(size) >> kDroppedBits;
   return rank << (64 - kSizeBits) | object.key >> kSizeBits;
 }

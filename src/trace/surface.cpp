@@ -53,9 +53,7 @@ inline Normal unit_normal(const Normal& n, const Imath::M33f& to_world, const No
   return unit_or(scaled(scaled(n) * to_world), otherwise);
 }
 
-float largest_of(float a, float b, float c) {
-  return std::max(std::max(std::fabs(a), std::fabs(b)), std::fabs(c));
-}
+float largest_of(float a, float b, float c) { return std::max(std::max(std::fabs(a), std::fabs(b)), std::fabs(c)); }
 
 /// From a point of a triangle towards the planes through its vertices across their normals, weighted as the vertices
 /// are: onto the surface that they stand for, where that lies above the triangle (Hanika 2021, "Hacking the Shadow
@@ -153,8 +151,7 @@ TangentFrame turned(const TangentFrame& frame, const Normal& front, const Textur
   // d(u, v) of the mesh for a step along the map's u, from the inverse of the transform, times |scale x scale|.
   const float along_u = cosine * slot.scale.y, along_v = sine * slot.scale.x;
   const float sign = slot.scale.x * slot.scale.y < 0 ? -1.0F : 1.0F;
-  const Direction tangent =
-      unit_or((frame.tangent * along_u - frame.bitangent * along_v) * sign, Direction(0, 0, 0));
+  const Direction tangent = unit_or((frame.tangent * along_u - frame.bitangent * along_v) * sign, Direction(0, 0, 0));
   const float handedness = front.cross(frame.tangent).dot(frame.bitangent) < 0 ? -sign : sign;
   return {tangent, front.cross(tangent) * handedness};
 }

@@ -43,7 +43,8 @@ struct SelectionBounds {
   Box moved, shadows_before, shadows_after;  // as the top levels of RayChange
   float condition = 1;
 };
-/// May the segment from `origin` along `direction`, from t_min as far as t_max, meet something in the box? Errs to true.
+/// May the segment from `origin` along `direction`, from t_min as far as t_max, meet something in the box? Errs to
+/// true.
 [[nodiscard]] bool may_meet(const Box& box, float condition, const Point& origin, const Direction& direction,
                             float t_min, float t_max);
 

@@ -102,8 +102,7 @@ bool is_same_crossing(const RayObject& object, const Meeting& a, const Meeting& 
 
 bool is_behind(const RayObject& object, const Meeting& candidate, const Query& query) {
   const Meeting& last = query.ray->behind;
-  return last.object.is_none() ||
-         (last.nearer_than(candidate) && !is_same_crossing(object, last, candidate, query));
+  return last.object.is_none() || (last.nearer_than(candidate) && !is_same_crossing(object, last, candidate, query));
 }
 
 void keep_nearest(const RTCFilterFunctionNArguments* args) {

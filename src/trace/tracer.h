@@ -101,8 +101,8 @@ class Tracer {
   [[nodiscard]] static float distance(const TopLevel& level, const Ray& ray, std::uint32_t primitive);
 
   /// Segments run from a point to a light, against the light's own way: single-sided surfaces are met where they face
-  /// the light. False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent surfaces in
-  /// order. `crossings` is cleared first.
+  /// the light. False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent
+  /// surfaces in order. `crossings` is cleared first.
   [[nodiscard]] static bool passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings);
 
   /// All surfaces that the segment crosses, opaque ones too, in order. `crossings` is cleared first. Requires: a level

@@ -25,7 +25,7 @@ struct SpawnedRay {
   float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
   std::uint8_t generation = 1;    // 1: primary
   Branch branch = Branch::primary;
-  float start = 0;            // metres: nothing is met before
+  float start = 0;                                     // metres: nothing is met before
   float end = std::numeric_limits<float>::infinity();  // nor after
   Meeting behind{};           // the hit that it goes straight on from; t NaN: not known; object none: no such hit
   float travelled = 0;        // metres from the origin to that hit
@@ -53,11 +53,11 @@ struct RayNode {
   std::uint32_t sample;  // within the tile
   ObjectId object;       // none: miss
   Hit hit;
-  SpawnedRay ray;             // that led here
-  std::uint8_t cut_mask = 0;  // branches that the Fresnel cut-off removed
+  SpawnedRay ray;                                     // that led here
+  std::uint8_t cut_mask = 0;                          // branches that the Fresnel cut-off removed
   float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
   float length = 0;                                   // metres from the ray's origin
-  float footprint = 0;        // ray-cone width at the hit over the cosine of incidence
+  float footprint = 0;                                // ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
 };
