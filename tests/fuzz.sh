@@ -67,7 +67,7 @@ found=0
 printf '%-8s %10s %8s %8s %9s\n' target runs edges crashes time-outs
 for target in $targets; do
   log="$work/$target.log"
-  runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -1)
+  runs=$(LC_ALL=C sed -n 's/^stat::number_of_executed_units: *//p' "$log" | tail -1)
   edges=$(grep -ao 'cov: [0-9]*' "$log" | tail -1 | cut -d' ' -f2)
   slow=$(find "$work/crashes/$target" -name 'timeout-*' | wc -l)
   crashes=$(find "$work/crashes/$target" -type f ! -name 'timeout-*' ! -name 'slow-unit-*' | wc -l)
