@@ -105,10 +105,9 @@ TEST(ShadowCounter, paths_with_malformed_entries_are_found_out) {
 /// ball that let light through. The camera looks from below the lowest slab, so that it sees little but the floor.
 SceneState levels_scene(bool with_glass) {
   SceneBuilder scene;
-  Json plastic = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}};
+  Json plastic = {{"pbrMetallicRoughness", {{"metallicFactor", 0}}}, {"doubleSided", true}};
   const int dull = scene.material("Dull", plastic);
   plastic["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
-  plastic["doubleSided"] = true;
   const int glass = scene.material("Glass", plastic);
   const int slab = scene.mesh("Slab", box_mesh(Point(0.8F, 0.05F, 0.7F)), dull);
   const int pane = scene.mesh("Pane", box_mesh(Point(0.9F, 0.04F, 0.9F)), glass);

@@ -36,6 +36,7 @@ TEST(Ties, NearestHitDoesNotDependOnTheOrderOfObjects) {
     Ray ray;
     ray.origin = Point(coordinate(reach), coordinate(reach), coordinate(reach));
     ray.direction = Point(0.9F + coordinate(0.25F), 0.5F + coordinate(0.3F), 1.2F + coordinate(0.25F)) - ray.origin;
+    ray.origin -= Point(one.scene().camera.eye);
     if (i % 2 == 0) ray.direction.normalize();
     const Meeting a = Tracer::intersect(level_one, ray), b = Tracer::intersect(level_other, ray);
     ASSERT_EQ(a.object.is_none(), b.object.is_none());

@@ -25,13 +25,16 @@ struct Shortage {
   }
 };
 
-const Ray kDown{Point(0, 20, 0), Direction(0, -1, 0)};
+/// From high above the scene.
+Ray down(const SceneState& state) {
+  return {Point(WidePoint(0, 20, 0) - state.scene().camera.eye), Direction(0, -1, 0)};
+}
 
 TEST(TracerMemory, a_shortage_at_any_point_of_a_build_is_an_error_and_the_next_build_is_whole) {
   const SceneState state = spheres_scene(8, 8);
   const RayScene rays(state.scene());
   Tracer plain;
-  const Meeting expected = Tracer::intersect(plain.build(rays), kDown);
+  const Meeting expected = Tracer::intersect(plain.build(rays), down(state));
   ASSERT_FALSE(expected.object.is_none());
   int shortages = 0;
   for (int n = 0;; ++n) {
@@ -47,7 +50,7 @@ TEST(TracerMemory, a_shortage_at_any_point_of_a_build_is_an_error_and_the_next_b
     EXPECT_EQ(failed, shortage.thrown > 0) << n;
     shortage.left = -1;
     const Tracer::TopLevel level = tracer.build(rays);
-    const Meeting meeting = Tracer::intersect(level, kDown);
+    const Meeting meeting = Tracer::intersect(level, down(state));
     EXPECT_EQ(meeting.object, expected.object) << n;
     EXPECT_EQ(meeting.t, expected.t) << n;
     if (!failed) break;
@@ -62,13 +65,13 @@ TEST(TracerMemory, a_level_stays_what_it_was_when_its_overlay_cannot_be_built) {
   Shortage shortage;
   Tracer tracer(false, shortage.monitor());
   Tracer::TopLevel level = tracer.build(rays);
-  const Meeting before = Tracer::intersect(level, kDown);
+  const Meeting before = Tracer::intersect(level, down(state));
   RayObject moved = rays.object(before.object);
   moved.mesh = std::make_shared<const Mesh>(*moved.mesh);  // not built yet
   const Tracer::Placed placed{before.object, &moved};
   shortage.left = 0;
   EXPECT_THROW(tracer.replace(level, std::span(&before.object, 1), std::span(&placed, 1)), ResourceError);
-  const Meeting after = Tracer::intersect(level, kDown);
+  const Meeting after = Tracer::intersect(level, down(state));
   EXPECT_EQ(after.object, before.object);
   EXPECT_EQ(after.t, before.t);
 }
@@ -76,7 +79,7 @@ TEST(TracerMemory, a_level_stays_what_it_was_when_its_overlay_cannot_be_built) {
 TEST(TracerMemory, an_objects_level_is_built_again_after_a_shortage) {
   const SceneState state = spheres_scene(8, 8);
   const RayScene rays(state.scene());
-  const ObjectId id = Tracer::intersect(Tracer().build(rays), kDown).object;
+  const ObjectId id = Tracer::intersect(Tracer().build(rays), down(state)).object;
   Shortage shortage;
   ObjectLevels levels(rays, shortage.monitor());
   for (int n = 0; n < 3; ++n) {
@@ -88,7 +91,7 @@ TEST(TracerMemory, an_objects_level_is_built_again_after_a_shortage) {
     }
   }
   shortage.left = -1;
-  EXPECT_EQ(Tracer::intersect(levels.of(id), kDown).object, id);
+  EXPECT_EQ(Tracer::intersect(levels.of(id), down(state)).object, id);
 }
 
 }  // namespace
