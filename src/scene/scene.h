@@ -24,15 +24,33 @@ struct Displacement {
   bool operator==(const Displacement&) const = default;
 };
 
+/// What morph weights and joints make of a mesh (deformation.h).
+struct Deformation {
+  std::vector<float> weights;     // of the mesh's targets, in their order; empty: none adds anything
+  std::vector<Transform> joints;  // inverse bind matrix, then the joint's place from where the object is; empty: no skin
+  bool operator==(const Deformation&) const = default;
+};
+
+/// A deformation shared by the copies of an object, compared by value; none: the mesh stays as it is.
+struct SharedDeformation {
+  std::shared_ptr<const Deformation> value;
+  explicit operator bool() const { return value != nullptr; }
+  const Deformation& operator*() const { return *value; }
+  bool operator==(const SharedDeformation& other) const {
+    return value == other.value || (value && other.value && *value == *other.value);
+  }
+};
+
 /// One glTF primitive placed by one node (or one instance of it): what a ray path names.
 struct Object {
   std::string node;            // look-document name of the node
   std::uint32_t primitive = 0, instance = 0;
   std::uint64_t key = 0;       // hash of (node, primitive, instance): orders coincident hits, the same in every run
   bool alive = true;           // false: deleted or hidden
-  MeshId mesh;                 // undisplaced geometry
+  MeshId mesh;                 // geometry as imported
   MaterialId material;
   Transform to_world;          // affine, row vectors; from the camera's eye
+  SharedDeformation deformation;            // before displacement
   std::optional<Displacement> displacement;
   bool operator==(const Object&) const = default;
 };
