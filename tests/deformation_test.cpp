@@ -1,0 +1,396 @@
+// Morph targets and skins: formulas of glTF 2.0 against a plain evaluation of them, files and caches that are wrong, and
+// what edits of joints, weights and skins mean.
+#include "scene/deformation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "base/error.h"
+#include "cache/scene_parts.h"
+#include "edit/apply.h"
+#include "gltf_writer.h"
+#include "random_changes.h"
+#include "run_program.h"
+#include "scene/import_memory.h"
+#include "scene/look_bounds.h"
+#include "test_scenes.h"
+
+namespace relook {
+namespace {
+
+Point random_point(Dice& dice) {
+  return Point(static_cast<float>(dice.between(-2, 2)), static_cast<float>(dice.between(-2, 2)),
+               static_cast<float>(dice.between(-2, 2)));
+}
+
+/// 40 vertices, three targets, eight influences of five joints.
+Mesh random_mesh(Dice& dice) {
+  Mesh mesh;
+  constexpr std::size_t kVertices = 40, kInfluences = 8, kJoints = 5;
+  mesh.targets.resize(3);
+  for (std::size_t i = 0; i < kVertices; ++i) {
+    mesh.positions.push_back(random_point(dice));
+    mesh.normals.push_back((random_point(dice) + Point(0, 5, 0)).normalized());
+    const Direction tangent = (random_point(dice) + Point(5, 0, 0)).normalized();
+    mesh.tangents.emplace_back(tangent.x, tangent.y, tangent.z, i % 2 == 0 ? 1.0F : -1.0F);
+    for (MorphTarget& target : mesh.targets) {
+      target.positions.push_back(random_point(dice));
+      target.normals.push_back(random_point(dice) * 0.2F);
+      target.tangents.push_back(random_point(dice) * 0.2F);
+    }
+    std::vector<float> weights(kInfluences);
+    float sum = 0;
+    for (float& weight : weights) sum += weight = static_cast<float>(dice.between(0, 1));
+    for (const float weight : weights) {
+      mesh.joints.push_back(static_cast<std::uint16_t>(dice.below(kJoints)));
+      mesh.joint_weights.push_back(weight / sum);
+    }
+    if (i >= 2) mesh.triangles.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(i - 1), 0});
+  }
+  mesh.targets[1].normals.clear();
+  return mesh;
+}
+
+/// Near the identity, or near its mirror image.
+Transform random_joint(Dice& dice, bool mirrored) {
+  Transform joint;
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 3; ++column) joint[row][column] += static_cast<float>(dice.between(-0.15, 0.15));
+  if (mirrored) joint[0] [0] -= 2;
+  return joint;
+}
+
+Deformation random_pose(Dice& dice, bool mirrored) {
+  Deformation pose;
+  pose.weights = {0.5F, -0.25F, 1.5F};
+  for (int i = 0; i < 5; ++i) pose.joints.push_back(random_joint(dice, mirrored));
+  return pose;
+}
+
+/// Sections 3.7.2.2 and 3.7.3.3, one vertex at a time, with matrices of 16 doubles and a real inverse.
+struct Expected {
+  Imath::V3d position, normal, tangent;
+};
+Expected expected_vertex(const Mesh& mesh, const Deformation& pose, std::size_t vertex) {
+  Imath::V3d p(mesh.positions[vertex]), n(mesh.normals[vertex]),
+      t(Imath::V3f(mesh.tangents[vertex].x, mesh.tangents[vertex].y, mesh.tangents[vertex].z));
+  for (std::size_t k = 0; k < mesh.targets.size(); ++k) {
+    const auto weight = static_cast<double>(pose.weights[k]);
+    p += weight * Imath::V3d(mesh.targets[k].positions[vertex]);
+    if (!mesh.targets[k].normals.empty()) n += weight * Imath::V3d(mesh.targets[k].normals[vertex]);
+    t += weight * Imath::V3d(mesh.targets[k].tangents[vertex]);
+  }
+  Imath::M44d sum(0.0);
+  const std::size_t influences = mesh.joints.size() / mesh.positions.size();
+  for (std::size_t i = vertex * influences; i < (vertex + 1) * influences; ++i)
+    sum += Imath::M44d(pose.joints[mesh.joints[i]]) * static_cast<double>(mesh.joint_weights[i]);
+  Expected expected;
+  sum.multVecMatrix(p, expected.position);
+  sum.inverse().transposed().multDirMatrix(n, expected.normal);
+  sum.multDirMatrix(t, expected.tangent);
+  expected.normal.normalize();
+  expected.tangent.normalize();
+  return expected;
+}
+
+TEST(Deformation, is_what_the_formulas_of_the_specification_give) {
+  Dice dice(7);
+  for (const bool mirrored : {false, true}) {
+    const Mesh mesh = random_mesh(dice);
+    const Deformation pose = random_pose(dice, mirrored);
+    const Mesh result = deformed(mesh, pose);
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+      const Expected expected = expected_vertex(mesh, pose, i);
+      const Imath::V4f& tangent = result.tangents[i];
+      EXPECT_LT((Imath::V3d(result.positions[i]) - expected.position).length(), 2e-6) << i;
+      EXPECT_LT((Imath::V3d(result.normals[i]) - expected.normal).length(), 1e-6) << i;
+      EXPECT_LT((Imath::V3d(Imath::V3f(tangent.x, tangent.y, tangent.z)) - expected.tangent).length(), 1e-6) << i;
+      EXPECT_EQ(tangent.w, mirrored ? -mesh.tangents[i].w : mesh.tangents[i].w);
+      EXPECT_TRUE(result.bounds.intersects(result.positions[i]));
+    }
+    // What a mirror turns inside out is wound the other way: the outside stays outside.
+    EXPECT_EQ(result.triangles[3][1], mesh.triangles[3][mirrored ? 2 : 1]);
+    EXPECT_TRUE(result.targets.empty() && result.joints.empty());
+  }
+}
+
+TEST(Deformation, of_nothing_is_none) {
+  Dice dice(3);
+  const Mesh mesh = random_mesh(dice);
+  EXPECT_FALSE(deformation_of(mesh, nullptr, {}));
+  const Json zeros = {0, 0, 0}, beyond = {0, 0, 0, 5}, one = {0, 2};
+  EXPECT_FALSE(deformation_of(mesh, &zeros, {}));
+  EXPECT_FALSE(deformation_of(mesh, &beyond, {}));
+  EXPECT_EQ((*deformation_of(mesh, &one, {})).weights, (std::vector<float>{0, 2}));
+  EXPECT_TRUE(deformation_of(mesh, &one, {}) == deformation_of(mesh, &one, {}));
+}
+
+/// A square of two triangles with a target and a joint; vertex 4 of no triangle.
+SceneFile bent_square() {
+  SceneFile file = square();
+  file.binary.clear();
+  file.gltf.erase("bufferViews");
+  file.gltf.erase("accessors");
+  const std::size_t positions = file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 9, 9, 9, 1, 1, 0}, "VEC3", 3);
+  const std::size_t indices = file.add_accessor(file.add_view<std::uint16_t>({0, 1, 2, 2, 1, 4}), 5123, "SCALAR", 6);
+  const std::size_t target = file.floats({0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0, 4, 0, 0, 5}, "VEC3", 3);
+  const std::size_t joints =
+      file.add_accessor(file.add_view<std::uint8_t>({0, 1, 0, 0, 1, 0, 7, 0, 0, 0, 0, 0, 9, 9, 9, 9, 1, 0, 0, 0}), 5121,
+                        "VEC4", 5);
+  const std::size_t weights = file.add_accessor(
+      file.add_view<std::uint8_t>({51, 153, 0, 0, 255, 0, 0, 0, 0, 0, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0}), 5121, "VEC4",
+      5, {{"normalized", true}});
+  file.gltf["meshes"] = {{{"weights", {0.5}},
+                          {"primitives",
+                           {{{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
+                             {"indices", indices},
+                             {"targets", {{{"POSITION", target}}}}}}}}};
+  const std::size_t binds = file.floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1,  //
+                                         1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1},
+                                        "MAT4", 16);
+  file.gltf["skins"] = {{{"joints", {3, 4}}, {"inverseBindMatrices", binds}}};
+  file.gltf["nodes"][0] = {{"mesh", 0}, {"skin", 0}, {"name", "Square"}, {"translation", {50, 0, 0}}};
+  file.gltf["nodes"][2] = {{"name", "Rig"}, {"children", {3, 1}}};
+  file.gltf["nodes"].push_back({{"name", "Root"}, {"translation", {0, 10, 0}}, {"children", {4}}});
+  file.gltf["nodes"].push_back({{"name", "Tip"}, {"translation", {1, 0, 0}}});
+  file.gltf["scenes"][0]["nodes"] = {0, 2};
+  file.gltf.erase("extensions");
+  file.gltf.erase("extensionsUsed");
+  return file;
+}
+
+class DeformingFiles : public testing::Test {
+ protected:
+  [[nodiscard]] ImportedGltf imported(const SceneFile& file) const {
+    std::ofstream(folder_ / "scene.glb", std::ios::binary) << file.glb();
+    return import_gltf(folder_ / "scene.glb");
+  }
+  [[nodiscard]] LookDocument document_of(const SceneFile& file) const { return make_look_document(imported(file)); }
+  [[nodiscard]] SceneState state_of(const SceneFile& file) const {
+    LookDocument document = document_of(file);
+    const Camera camera = choose_camera(document, "", 32, 32);
+    return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
+  }
+  /// Of bent_square() after `spoil`.
+  void expect_refusal(const std::string& part, const std::function<void(SceneFile&)>& spoil) const {
+    SceneFile file = bent_square();
+    spoil(file);
+    std::string message = "accepted";
+    try {
+      (void)state_of(file);
+    } catch (const InputError& error) {
+      message = error.what();
+    }
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+  ScratchFolder folder_{"deforming_files"};
+};
+
+TEST_F(DeformingFiles, keep_the_vertices_that_triangles_name_and_whole_weights) {
+  const Mesh mesh = imported(bent_square()).meshes[0][0];
+  ASSERT_EQ(mesh.positions.size(), 4U);
+  ASSERT_EQ(mesh.targets.size(), 1U);
+  EXPECT_EQ(mesh.targets[0].positions, (std::vector<Point>{{0, 0, 1}, {0, 0, 2}, {0, 0, 3}, {0, 0, 5}}));
+  EXPECT_EQ(mesh.joints, (std::vector<std::uint16_t>{0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0}));
+  EXPECT_FLOAT_EQ(mesh.joint_weights[0], 0.25F);
+  EXPECT_FLOAT_EQ(mesh.joint_weights[1], 0.75F);
+  EXPECT_EQ(mesh.joint_weights[8], 1);  // of no weight at all: the first joint
+  EXPECT_EQ(mesh.joint_count(), 2U);
+}
+
+/// By hand: vertex 1 hangs on Tip, vertex 2 on Root. Root is at (0, 10, 0), so is Tip but for its bind at x = 1.
+TEST_F(DeformingFiles, stand_as_weights_and_joints_say_whatever_the_transform_of_their_node) {
+  const SceneState state = state_of(bent_square());
+  EXPECT_EQ(state.document().look["nodes"]["Square"]["weights"], Json({0.5}));
+  EXPECT_EQ(state.document().look["skins"]["skin_0"]["joints"], Json({"Root", "Tip"}));
+  const Object& object = state.scene().objects[0];
+  const Mesh mesh = deformed(state.scene().mesh(object.mesh), *object.deformation);
+  const WidePoint eye = state.scene().camera.eye;
+  const auto in_world = [&](std::size_t vertex) { return WidePoint(mesh.positions[vertex] * object.to_world) + eye; };
+  EXPECT_LT((in_world(0) - WidePoint(0, 10, 0.5)).length(), 1e-5);
+  EXPECT_LT((in_world(1) - WidePoint(1, 10, 1)).length(), 1e-5);
+  EXPECT_LT((in_world(2) - WidePoint(0, 11, 1.5)).length(), 1e-5);
+  const WideBox bounds = world_bounds(state.document());
+  EXPECT_LT((bounds.min - WidePoint(0, 10, 0.5)).length(), 1e-5);
+  EXPECT_LT((bounds.max - WidePoint(1, 11, 2.5)).length(), 1e-5);
+}
+
+TEST_F(DeformingFiles, take_weights_of_the_node_before_those_of_the_mesh_and_sparse_targets) {
+  SceneFile file = bent_square();
+  file.gltf["nodes"][0]["weights"] = {0.25};
+  const std::size_t target = file.primitive()["targets"][0]["POSITION"];
+  const std::size_t values = file.add_view<float>({0, 0, 8, 0, 0, 9}), indices = file.add_view<std::uint8_t>({1, 3});
+  file.gltf["accessors"][target] = {{"componentType", 5126},
+                                    {"type", "VEC3"},
+                                    {"count", 5},
+                                    {"sparse",
+                                     {{"count", 2},
+                                      {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                                      {"values", {{"bufferView", values}}}}}};
+  const SceneState state = state_of(file);
+  const Mesh& mesh = state.scene().assets->meshes[0];
+  EXPECT_EQ(mesh.targets[0].positions, (std::vector<Point>{{0, 0, 0}, {0, 0, 8}, {0, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ((*state.scene().objects[0].deformation).weights, std::vector<float>{0.25F});
+}
+
+TEST_F(DeformingFiles, are_refused_where_they_are_wrong) {
+  expect_refusal("accepted", [](SceneFile&) {});
+  expect_refusal("/skins/0/joints/1: there is no node 77", [](SceneFile& f) { f.gltf["skins"][0]["joints"][1] = 77; });
+  expect_refusal("/skins/0/joints: a skin needs a joint",
+                 [](SceneFile& f) { f.gltf["skins"][0]["joints"] = Json::array(); });
+  expect_refusal("/skins/0/inverseBindMatrices: has 2 matrices for 3 joints",
+                 [](SceneFile& f) { f.gltf["skins"][0]["joints"].push_back(2); });
+  expect_refusal("/skins/0/inverseBindMatrices: matrix 0 is not finite", [](SceneFile& f) {
+    f.gltf["skins"][0]["inverseBindMatrices"] = f.floats(std::vector<float>(32, NAN), "MAT4", 16);
+  });
+  expect_refusal("/nodes/Square/skin: the mesh names joint 1, the skin has 1 joints",
+                 [](SceneFile& f) { f.gltf["skins"][0]["joints"] = {3}; });
+  expect_refusal("/attributes/WEIGHTS_0: element 0 is not finite", [](SceneFile& f) {
+    f.primitive()["attributes"]["WEIGHTS_0"] = f.floats(std::vector<float>(20, NAN), "VEC4", 4);
+  });
+  expect_refusal("/attributes/JOINTS_0: joints must be unsigned integers", [](SceneFile& f) {
+    f.primitive()["attributes"]["JOINTS_0"] = f.floats(std::vector<float>(20, 0), "VEC4", 4);
+  });
+  expect_refusal("/targets/0/POSITION: has 2 elements, the primitive has 5 vertices", [](SceneFile& f) {
+    f.primitive()["targets"][0]["POSITION"] = f.floats({0, 0, 0, 1, 1, 1}, "VEC3", 3);
+  });
+  expect_refusal("/nodes/Square/weights/0: expected a number",
+                 [](SceneFile& f) { f.gltf["nodes"][0]["weights"] = {"much"}; });
+}
+
+/// 65,535 targets of a large accessor without a buffer view: a small file that asks for gigabytes.
+TEST_F(DeformingFiles, ask_for_memory_before_they_take_it) {
+  SceneFile file = square();
+  file.gltf["accessors"].push_back({{"componentType", 5126}, {"type", "VEC3"}, {"count", 4}});
+  const std::size_t zeros = file.gltf["accessors"].size() - 1;
+  file.primitive()["targets"] = Json(65'535, {{"POSITION", zeros}, {"NORMAL", zeros}});
+  const std::vector<Mesh> meshes = imported(file).meshes.at(0);
+  EXPECT_EQ(meshes[0].targets.size(), 65'535U);
+  EXPECT_TRUE(meshes[0].targets[77].positions.empty());
+  set_import_memory(1 << 20);
+  EXPECT_THROW((void)imported(file), ResourceError);
+  set_import_memory(kImportMemory);
+}
+
+TEST_F(DeformingFiles, without_a_joint_in_the_scene_lose_their_skin) {
+  SceneFile file = bent_square();
+  file.gltf["scenes"][0]["nodes"] = {0, 1};
+  file.gltf["nodes"][2]["children"] = {3};
+  const ImportedGltf gltf = imported(file);
+  EXPECT_EQ(gltf.warnings.back(), "/skins/0: the scene does not show joint node 3: the skin is left out");
+  const LookDocument document = document_of(file);
+  EXPECT_TRUE(document.look["skins"].empty());
+  EXPECT_FALSE(document.look["nodes"]["Square"].contains("skin"));
+}
+
+/// Geometry as a cache keeps it, spoilt before it is written.
+std::string damage_of(const std::function<void(LookDocument&)>& spoil) {
+  const SceneState state = puppet_scene(16, 16);
+  LookDocument document = state.document();
+  document.assets = std::make_shared<Assets>(*state.document().assets);
+  spoil(document);
+  const CacheIdentity identity{std::string(32, '0'), std::string(32, '0')};
+  LookDocument read;
+  read.assets = std::make_shared<Assets>();
+  try {
+    decode_geometry(encode_geometry(document, identity), identity, read, *read.assets);
+  } catch (const CacheDamage& damage) {
+    return damage.what();
+  }
+  const Mesh &before = document.assets->meshes[1], &after = read.assets->meshes[1];
+  EXPECT_EQ(before.targets, after.targets);
+  EXPECT_EQ(before.joints, after.joints);
+  EXPECT_EQ(before.joint_weights, after.joint_weights);
+  EXPECT_EQ(document.inverse_binds, read.inverse_binds);
+  return "sound";
+}
+
+TEST(DeformingCaches, come_back_as_written_and_are_checked) {
+  EXPECT_EQ(damage_of([](LookDocument&) {}), "sound");
+  const auto expect = [](const std::string& part, const std::function<void(Mesh&)>& spoil) {
+    const std::string found = damage_of([&](LookDocument& document) { spoil(document.assets->meshes[1]); });
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  };
+  expect("a morph target that is not as long as mesh Ball", [](Mesh& mesh) { mesh.targets[0].positions.pop_back(); });
+  expect("joints that do not fit mesh Ball",
+         [](Mesh& mesh) { mesh.joints.pop_back(), mesh.joint_weights.pop_back(); });
+  expect("not finite in section joint_weights", [](Mesh& mesh) { mesh.joint_weights[3] = NAN; });
+  expect("a weight of a joint that is out of range", [](Mesh& mesh) { mesh.joint_weights[3] = -1; });
+  expect("section joint_weights is too short", [](Mesh& mesh) { mesh.joint_weights.pop_back(); });
+  expect("not finite in section target_normals", [](Mesh& mesh) { mesh.targets[0].normals[2].y = INFINITY; });
+}
+
+/// A look document of a cache is compiled: what its geometry does not bear out is found there.
+TEST(DeformingCaches, whose_skins_and_joints_disagree_are_refused) {
+  const SceneState state = puppet_scene(16, 16);
+  const auto message = [&](const std::function<void(LookDocument&)>& spoil) {
+    LookDocument document = state.document();
+    document.assets = std::make_shared<Assets>(*state.document().assets);
+    spoil(document);
+    try {
+      SceneState(std::move(document), state.scene().camera, state.pyramids());
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message([](LookDocument& d) { d.assets->meshes[1].joints[0] = 2; }).find("the mesh names joint 2"),
+            std::string::npos);
+  EXPECT_NE(message([](LookDocument& d) { d.inverse_binds.begin()->second.pop_back(); })
+                .find("/skins/Puppet/joints: there are 2 joints for 1 inverse bind matrices"),
+            std::string::npos);
+  EXPECT_NE(message([](LookDocument& d) { d.inverse_binds.clear(); }).find("no inverse bind matrices"),
+            std::string::npos);
+}
+
+Edit edit_text(const std::string& text) { return parsed_edit(text); }
+
+TEST(DeformingEdits, say_what_they_do) {
+  SceneState state = puppet_scene(16, 16);
+  const auto reasons = [&](const std::string& text) {
+    const SceneDelta delta = apply_edit(state, edit_text(text), "j.json", ".");
+    const Classification found = classify(state.scene(), delta);
+    EXPECT_EQ(found.change, ChangeClass::geometric);
+    return found.reasons;
+  };
+  EXPECT_EQ(reasons(R"([{"op": "replace", "path": "/nodes/Ball/weights/1", "value": 1}])"),
+            std::vector<std::string>{"node Ball: morph weights changed"});
+  EXPECT_EQ(reasons(R"([{"op": "replace", "path": "/nodes/Hip/scale", "value": [1, 2, 1]}])"),
+            std::vector<std::string>{"node Ball: its joints are transformed"});
+  // The transform of a skinned node counts for nothing.
+  EXPECT_TRUE(apply_edit(state, edit_text(R"([{"op": "replace", "path": "/nodes/Ball/scale", "value": [1, 2, 1]}])"),
+                         "j.json", ".")
+                  .empty());
+}
+
+TEST(DeformingEdits, keep_skins_and_joints_together) {
+  SceneState state = puppet_scene(16, 16);
+  const auto refusal = [&](const std::string& text) {
+    try {
+      (void)apply_edit(state, edit_text(text), "j.json", ".");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(refusal(R"([{"op": "remove", "path": "/nodes/Chest"}])").find("node \"Chest\" is still used by skin \"Puppet\""),
+            std::string::npos);
+  EXPECT_NE(refusal(R"([{"op": "remove", "path": "/nodes/Rig"}])"), "");
+  EXPECT_NE(refusal(R"([{"op": "replace", "path": "/skins/Puppet/joints", "value": ["Hip"]}])")
+                .find("there are 1 joints for 2 inverse bind matrices"),
+            std::string::npos);
+  const Json look = state.document().look;
+  EXPECT_EQ(refusal(R"([{"op": "move", "from": "/nodes/Chest", "path": "/nodes/Thorax"}])"), "");
+  EXPECT_EQ(state.document().look["skins"]["Puppet"]["joints"], Json({"Hip", "Thorax"}));
+  EXPECT_EQ(refusal(R"([{"op": "move", "from": "/nodes/Thorax", "path": "/nodes/Chest"}])"), "");
+  EXPECT_EQ(state.document().look, look);
+  EXPECT_EQ(refusal(R"([{"op": "remove", "path": "/nodes/Ball"}, {"op": "remove", "path": "/nodes/Rig"}])"), "");
+  EXPECT_TRUE(state.document().look["skins"].empty());
+}
+
+}  // namespace
+}  // namespace relook
