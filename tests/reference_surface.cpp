@@ -22,7 +22,8 @@ T mixed(const T& a, const T& b, const T& c, double u, double v) {
 }
 
 /// What SHADING.md calls lift, in the world.
-Vec lift_of(const Mesh& mesh, const WorldTriangle& triangle, double u, double v, bool inside, const Imath::M44d& world) {
+Vec lift_of(const Mesh& mesh, const WorldTriangle& triangle, double u, double v, bool inside,
+            const Imath::M44d& world) {
   const auto& vertices = mesh.triangles[triangle.primitive];
   const std::array<double, 3> weights{1 - u - v, u, v};
   Vec p(0, 0, 0), lift(0, 0, 0), in_world;

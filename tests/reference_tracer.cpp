@@ -148,8 +148,7 @@ std::vector<ReferenceTracer::Arriving> ReferenceTracer::lamps(const Surface& s) 
     if (s.smooth.dot(toward) <= 0) continue;
     const Vec start = s.p + s.lift * std::clamp(1 - s.ng.dot(toward) / 0.1, 0.0, 1.0) + s.ng * kOffset;
     const Vec way = light.kind == LightKind::directional ? toward * distance : Vec(light.position) - start;
-    arriving.push_back(
-        {toward, irradiance * visibility(start, way.normalized(), way.length(), s.width / s.incidence)});
+    arriving.push_back({toward, irradiance * visibility(start, way.normalized(), way.length(), s.width / s.incidence)});
   }
   return arriving;
 }

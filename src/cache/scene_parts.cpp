@@ -14,9 +14,22 @@ namespace {
 
 constexpr std::int64_t kMostValues = std::int64_t{1} << 40;
 constexpr float kLargestNumber = 1e18F;
-constexpr std::array<const char*, 16> kColumns{
-    "positions", "triangles",        "normals",        "tangents",        "uv0",    "uv1",           "colors",       "bounds",
-    "min_alpha", "target_positions", "target_normals", "target_tangents", "joints", "joint_weights", "inverse_binds", "instances"};
+constexpr std::array<const char*, 16> kColumns{"positions",
+                                               "triangles",
+                                               "normals",
+                                               "tangents",
+                                               "uv0",
+                                               "uv1",
+                                               "colors",
+                                               "bounds",
+                                               "min_alpha",
+                                               "target_positions",
+                                               "target_normals",
+                                               "target_tangents",
+                                               "joints",
+                                               "joint_weights",
+                                               "inverse_binds",
+                                               "instances"};
 
 template <class T>
 void check_numbers(const std::vector<T>& values, const char* section) {
@@ -164,9 +177,9 @@ void read_targets(const JsonView& entries, GeometryColumns& columns, Mesh& mesh)
     target.positions = take(0, columns.target_positions);
     target.normals = take(1, columns.target_normals);
     target.tangents = take(2, columns.target_tangents);
-    check_sound((target.normals.empty() || !mesh.normals.empty()) &&
-                    (target.tangents.empty() || !mesh.tangents.empty()),
-                "a morph target of a column that is missing in mesh " + printable(mesh.name));
+    check_sound(
+        (target.normals.empty() || !mesh.normals.empty()) && (target.tangents.empty() || !mesh.tangents.empty()),
+        "a morph target of a column that is missing in mesh " + printable(mesh.name));
   }
 }
 

@@ -78,7 +78,8 @@ Columns morphed(const Mesh& mesh, const std::vector<float>& weights) {
   Columns columns;
   columns.positions.assign(mesh.positions.begin(), mesh.positions.end());
   columns.normals.assign(mesh.normals.begin(), mesh.normals.end());
-  for (const Imath::V4f& tangent : mesh.tangents) columns.tangents.emplace_back(Imath::V3f(tangent.x, tangent.y, tangent.z));
+  for (const Imath::V4f& tangent : mesh.tangents)
+    columns.tangents.emplace_back(Imath::V3f(tangent.x, tangent.y, tangent.z));
   add_targets(mesh, weights, &MorphTarget::positions, columns.positions);
   add_targets(mesh, weights, &MorphTarget::normals, columns.normals);
   add_targets(mesh, weights, &MorphTarget::tangents, columns.tangents);
@@ -113,6 +114,9 @@ Mesh deformed(const Mesh& mesh, const Deformation& deformation) {
   result.uv = mesh.uv;
   result.colors = mesh.colors;
   result.min_alpha = mesh.min_alpha;
+  result.positions.reserve(columns.positions.size());
+  result.normals.reserve(columns.normals.size());
+  result.tangents.reserve(columns.tangents.size());
   for (const Vector& position : columns.positions) {
     result.positions.push_back(bounded(position));
     result.bounds.extendBy(result.positions.back());

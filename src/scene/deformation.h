@@ -1,4 +1,5 @@
-// Morph targets and skins (glTF 2.0 sections 3.7.2.2 and 3.7.3): the mesh that weights and joints make, object by object.
+// Morph targets and skins (glTF 2.0 sections 3.7.2.2 and 3.7.3): the mesh that weights and joints make, object by
+// object.
 #pragma once
 #include <functional>
 #include <span>

@@ -49,7 +49,7 @@ std::vector<std::uint32_t> vertex_sequence(const PrimitiveSource& source, std::s
     }
     if (sequence[i] >= vertices)
       source.fail("/indices", "index " + std::to_string(i) + " is " + std::to_string(sequence[i]) + ", but there are " +
-                                 std::to_string(vertices) + " vertices");
+                                  std::to_string(vertices) + " vertices");
   }
   if (restarts) source.warn("/indices", "primitive restart values, which glTF does not have, begin new strips");
   return sequence;
@@ -157,8 +157,9 @@ void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
     }
     const float handedness = values[i + 3];
     if (handedness != 1 && handedness != -1) {
-      source.warn(attribute_place("TANGENT"), "element " + std::to_string(source.vertices[i / 4]) +
-                                 " has a w that is neither 1 nor -1; tangents follow from the texture coordinates");
+      source.warn(attribute_place("TANGENT"),
+                  "element " + std::to_string(source.vertices[i / 4]) +
+                      " has a w that is neither 1 nor -1; tangents follow from the texture coordinates");
       mesh.tangents.clear();
       return;
     }
@@ -228,8 +229,8 @@ DecodedBytes decoded_bytes(const GltfModel& model, const GltfPrimitive& primitiv
   for (const auto& [semantic, size] : kColumns)
     if (primitive.attributes.contains(semantic)) bytes.kept = bounded_sum(bytes.kept, bounded_product(vertices, size));
   bytes.kept = bounded_sum(bytes.kept, deforming_bytes(primitive, vertices));
-  bytes.passing =
-      bounded_sum(bounded_product(9 * corners, sizeof(std::uint32_t)), bounded_product(vertices, passing_bytes(primitive)));
+  bytes.passing = bounded_sum(bounded_product(9 * corners, sizeof(std::uint32_t)),
+                              bounded_product(vertices, passing_bytes(primitive)));
   return bytes;
 }
 

@@ -43,10 +43,10 @@ std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& 
   std::vector<float> values = read_floats(source.model, accessor, source.vertices);
   const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
   if (bad != values.end())
-    source.fail(place, "element " +
-                           std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) /
-                                                          accessor.width]) +
-                           (std::isfinite(*bad) ? " is too large" : " is not finite"));
+    source.fail(place,
+                "element " +
+                    std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) / accessor.width]) +
+                    (std::isfinite(*bad) ? " is too large" : " is not finite"));
   return values;
 }
 

@@ -63,7 +63,8 @@ class GlbWriter {
   }
 
  private:
-  /// Appends a column of tightly packed numbers, a multiple of four bytes. Its accessor, where type is "SCALAR", "VEC2", ...
+  /// Appends a column of tightly packed numbers, a multiple of four bytes. Its accessor, where type is "SCALAR",
+  /// "VEC2", ...
   template <class T>
   std::size_t add_column(const std::vector<T>& column, const char* type, int component, std::size_t count) {
     const BytesView bytes = std::as_bytes(std::span(column));

@@ -179,8 +179,8 @@ const Schema& mesh_schema() {
       {name("material", Target::materials), integer("mode", 4, 0, 6), optional("extensions", extensions)}};
   static const Schema relook{{text("geometry")}};
   static const Schema extras = wrapped("relook", relook);
-  static const Schema mesh{{text("name"), list("primitives", primitive), numbers("weights", -kMost, kMost),
-                            implied("extras", extras)}};
+  static const Schema mesh{
+      {text("name"), list("primitives", primitive), numbers("weights", -kMost, kMost), implied("extras", extras)}};
   return mesh;
 }
 
@@ -206,11 +206,11 @@ const Schema& node_schema() {
   static const Schema node = [] {
     Field children = names("children", Target::nodes);
     children.fallback = Json::array();
-    Schema schema{{text("name"), name("mesh", Target::meshes), name("skin", Target::skins),
-                   numbers("weights", -kMost, kMost), children, name("camera", Target::cameras), implied("extensions", extensions), optional("extras", extras),
-                   reals("translation", {0.0, 0.0, 0.0}, -kMost, kMost),
-                   reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kMost, kMost),
-                   reals("scale", {1.0, 1.0, 1.0}, -kMost, kMost)}};
+    Schema schema{
+        {text("name"), name("mesh", Target::meshes), name("skin", Target::skins), numbers("weights", -kMost, kMost),
+         children, name("camera", Target::cameras), implied("extensions", extensions), optional("extras", extras),
+         reals("translation", {0.0, 0.0, 0.0}, -kMost, kMost), reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kMost, kMost),
+         reals("scale", {1.0, 1.0, 1.0}, -kMost, kMost)}};
     schema.fields.push_back(
         {.key = "matrix", .kind = FieldKind::reals, .fallback = {}, .low = -kMost, .high = kMost, .count = 16});
     return schema;

@@ -39,8 +39,8 @@ struct Mesh {
   float min_alpha = 1;                                  // smallest colors[].a, 1 without colours
   Box bounds;                                           // object space
   std::vector<MorphTarget> targets;                     // by index of a weight
-  std::vector<std::uint16_t> joints;                    // [positions][influences] of a skin, 0 where the weight is; or empty
-  std::vector<float> joint_weights;                     // [positions][influences], not negative, the sum of a vertex is 1
+  std::vector<std::uint16_t> joints;                    // [positions][influences], 0 where the weight is; or empty
+  std::vector<float> joint_weights;                     // the same; not negative, the sum of a vertex is 1
 
   /// The least number of joints that a skin of this mesh has; 0 for a mesh that is not skinned.
   [[nodiscard]] std::size_t joint_count() const;

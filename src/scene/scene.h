@@ -27,7 +27,7 @@ struct Displacement {
 /// What morph weights and joints make of a mesh (deformation.h).
 struct Deformation {
   std::vector<float> weights;     // of the mesh's targets, in their order; empty: none adds anything
-  std::vector<Transform> joints;  // inverse bind matrix, then the joint's place from where the object is; empty: no skin
+  std::vector<Transform> joints;  // inverse bind matrix, then the joint's place from the object's; empty: no skin
   bool operator==(const Deformation&) const = default;
 };
 
