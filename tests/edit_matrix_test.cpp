@@ -229,7 +229,9 @@ void expect_full_renders(SceneState state, const ViewOptions& view, const std::v
     EXPECT_EQ(step.counters.pixels_changed, step.changed_pixels.size());
     EXPECT_LE(step.counters.pixels_changed, step.counters.samples_affected);
     EXPECT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments);
-    if (is_of_class) EXPECT_EQ(step.classification.change, *is_of_class);
+    if (is_of_class) {
+      EXPECT_EQ(step.classification.change, *is_of_class);
+    }
     rows_that_changed += step.changed_pixels.empty() ? 0 : 1;
   }
   // Not every row bears on every scene, but a table that changes nothing would prove nothing.
