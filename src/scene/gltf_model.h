@@ -63,8 +63,9 @@ struct GltfModel {
 [[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
                                                            std::vector<std::string>& warnings, ImportShare& share);
 
-/// Inverse bind matrices of every skin, one a joint: identities without an accessor. Checks skins as a whole. A skin of
-/// which the active scene lacks a joint has none, and the nodes of `gltf` lose it, with a warning. `share`: as above.
+/// Inverse bind matrices of every skin, one a joint: identities without an accessor. Checks skins as a whole. A skin that
+/// no node of the active scene has, has none; nor has one of which the scene lacks a joint, and the nodes of `gltf` lose
+/// it, with a warning. `share`: as above.
 /// Throws InputError, ResourceError.
 [[nodiscard]] std::vector<std::vector<Transform>> decode_skins(Json& gltf, const GltfModel& model,
                                                                std::string_view file,

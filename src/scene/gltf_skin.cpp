@@ -54,12 +54,17 @@ std::vector<std::vector<Transform>> decode_skins(Json& gltf, const GltfModel& mo
   const JsonView root(gltf, file);
   const std::size_t node_count = array_size(root, "nodes");
   if (array_size(root, "skins") == 0) return skins;
-  std::vector<bool> is_shown(node_count, false);
-  for (const std::size_t node : active_nodes(gltf)) is_shown[node] = true;
-  for_each_object(root, "skins", [&](const JsonView& skin, std::size_t) {
+  std::vector<bool> is_shown(node_count, false), is_used(array_size(root, "skins"), false);
+  for (const std::size_t node : active_nodes(gltf)) {
+    is_shown[node] = true;
+    if (const auto skin = member(root.at("nodes").at(node), "skin"))
+      is_used[reference(*skin, is_used.size(), "skin")] = true;
+  }
+  for_each_object(root, "skins", [&](const JsonView& skin, std::size_t number) {
     (void)optional_reference(skin, "skeleton", node_count, "node");
     const std::vector<std::size_t> joints = joints_of(skin, node_count);
     const auto place = member(skin, "inverseBindMatrices");
+    if (!is_used[number]) return void(skins.emplace_back());
     std::uint64_t matrices = joints.size();
     if (place) matrices += model.accessors[reference(*place, model.accessors.size(), "accessor")].count;
     share.add(ImportShare(bounded_product(matrices, sizeof(Transform)), file, skin.pointer() + ": the skin"));
