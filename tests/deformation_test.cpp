@@ -14,12 +14,15 @@
 #include "gltf_writer.h"
 #include "random_changes.h"
 #include "run_program.h"
+#include "scene/gltf_write.h"
 #include "scene/import_memory.h"
 #include "scene/look_bounds.h"
 #include "test_scenes.h"
 
 namespace relook {
 namespace {
+
+Edit edit_text(const std::string& text) { return parsed_edit(text); }
 
 Point random_point(Dice& dice) {
   return Point(static_cast<float>(dice.between(-2, 2)), static_cast<float>(dice.between(-2, 2)),
@@ -286,6 +289,42 @@ TEST_F(DeformingFiles, without_a_joint_in_the_scene_lose_their_skin) {
   EXPECT_FALSE(document.look["nodes"]["Square"].contains("skin"));
 }
 
+TEST_F(DeformingFiles, come_back_from_geometry_that_a_journal_brings) {
+  const SceneState state = puppet_scene(16, 16);
+  const Mesh& ball = state.scene().assets->meshes[1];
+  const MeshToWrite written{"Ball", 1, {&ball}};
+  const Bytes bytes = glb_of(std::span(&written, 1));
+  write_file(folder_ / "ball.glb", bytes);
+  const Mesh read = import_gltf(folder_ / "ball.glb").meshes.at(0).at(0);
+  EXPECT_EQ(read.positions, ball.positions);
+  EXPECT_EQ(read.targets, ball.targets);
+  EXPECT_EQ(read.joints, ball.joints);
+  EXPECT_EQ(read.joint_weights, ball.joint_weights);
+}
+
+TEST_F(DeformingFiles, with_a_skin_that_nothing_uses_load_whatever_its_matrices) {
+  SceneFile file = bent_square();
+  file.gltf["nodes"][0].erase("skin");
+  file.gltf["skins"][0]["inverseBindMatrices"] = file.floats(std::vector<float>(32, NAN), "MAT4", 16);
+  EXPECT_TRUE(document_of(file).look["skins"].empty());
+}
+
+/// An asset with a skin under a new node, and away again.
+TEST_F(DeformingFiles, are_merged_with_their_skins) {
+  std::ofstream(folder_ / "scene.glb", std::ios::binary) << bent_square().glb();
+  SceneState state = puppet_scene(16, 16);
+  const Json look = state.document().look;
+  const std::string add = R"([{"op": "add", "path": "/nodes/X", "value": {"asset": "scene.glb"}}])";
+  (void)apply_edit(state, edit_text(add), "j.json", folder_ / "");
+  EXPECT_EQ(state.document().look["skins"]["X/skin_0"]["joints"], Json::array({"X/Root", "X/Tip"}));
+  EXPECT_EQ(state.document().look["nodes"]["X/Square"]["skin"], "X/skin_0");
+  const SceneState again = compiled_again(state);
+  EXPECT_EQ(again.scene().objects.size(), state.scene().objects.size());
+  (void)apply_edit(state, edit_text(R"([{"op": "remove", "path": "/nodes/X"}])"), "j.json", ".");
+  EXPECT_EQ(state.document().look["skins"], look["skins"]);
+  EXPECT_EQ(state.document().look["nodes"], look["nodes"]);
+}
+
 /// Geometry as a cache keeps it, spoilt before it is written.
 std::string damage_of(const std::function<void(LookDocument&)>& spoil) {
   const SceneState state = puppet_scene(16, 16);
@@ -345,8 +384,6 @@ TEST(DeformingCaches, whose_skins_and_joints_disagree_are_refused) {
   EXPECT_NE(message([](LookDocument& d) { d.inverse_binds.clear(); }).find("no inverse bind matrices"),
             std::string::npos);
 }
-
-Edit edit_text(const std::string& text) { return parsed_edit(text); }
 
 TEST(DeformingEdits, say_what_they_do) {
   SceneState state = puppet_scene(16, 16);
