@@ -117,6 +117,8 @@ ExitCode run_journal(const Arguments& arguments, Console& console) {
   BroughtFiles brought;
   brought.bring(files, journal.path.parent_path());
   static_cast<void>(check_journal(state, journal));  // a step that changes nothing is as the scene has it
+  if (arguments.journal_source == JournalSource::animation && !changes_scene(state, journal))
+    throw InputError(arguments.inputs[0], "", "the animation moves nothing that the scene shows");
   write_file(arguments.output, text);
   brought.keep();
   std::size_t frames = 0;

@@ -3,8 +3,12 @@
 // finds.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
+
 #include "engine/render.h"
 #include "engine/replay.h"
+#include "random_changes.h"
 #include "region_checks.h"
 #include "run_program.h"
 #include "test_scenes.h"
@@ -207,15 +211,11 @@ std::string case_name(const testing::TestParamInfo<MatrixCase>& info) {
          (info.param.shadow_bits == 0 ? "" : "_shadow_bits_" + std::to_string(info.param.shadow_bits));
 }
 
-TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
-  const auto [which, samples, kind, shadow_bits] = GetParam();
-  const ViewOptions view{samples, 6, shadow_bits};
-  SceneState state = test_scene(which, 64 / samples + 24, 48 / samples + 18);
+/// Steps through rows, each against a full render. `is_of_class`: what the class of a row must be, if anything.
+void expect_full_renders(SceneState state, const ViewOptions& view, const std::vector<Row>& rows,
+                         std::optional<ChangeClass> is_of_class) {
   Image image = preprocessed(state.scene(), view);
   Replayer replayer(std::move(state), std::move(image));
-  const auto rows = kind == ChangeClass::color     ? color_rows()
-                    : kind == ChangeClass::optical ? optical_rows()
-                                                   : geometric_rows();
   std::size_t rows_that_changed = 0;
   for (const Row& row : rows) {
     SCOPED_TRACE(row.name);
@@ -233,14 +233,103 @@ TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
     EXPECT_EQ(step.counters.pixels_changed, step.changed_pixels.size());
     EXPECT_LE(step.counters.pixels_changed, step.counters.samples_affected);
     EXPECT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments);
-    if (kind == ChangeClass::color &&
-        which != TestScene::study) {  // there Picture displaces and Matte spawns coat rays
-      EXPECT_EQ(step.classification.change, ChangeClass::color);
+    if (is_of_class) {
+      EXPECT_EQ(step.classification.change, *is_of_class);
     }
     rows_that_changed += step.changed_pixels.empty() ? 0 : 1;
   }
   // Not every row bears on every scene, but a table that changes nothing would prove nothing.
   EXPECT_GT(rows_that_changed, rows.size() / 2);
+}
+
+TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
+  const auto [which, samples, kind, shadow_bits] = GetParam();
+  const auto rows = kind == ChangeClass::color     ? color_rows()
+                    : kind == ChangeClass::optical ? optical_rows()
+                                                   : geometric_rows();
+  // In the study Picture displaces and Matte spawns coat rays.
+  const bool is_of_color = kind == ChangeClass::color && which != TestScene::study;
+  expect_full_renders(test_scene(which, 64 / samples + 24, 48 / samples + 18), {samples, 6, shadow_bits}, rows,
+                      is_of_color ? std::optional(ChangeClass::color) : std::nullopt);
+}
+
+/// Morph weights and joints bend what is seen directly, in a mirror, through glass and in shadows.
+std::vector<Row> deforming_rows() {
+  const Json identity = Json::array({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.3, 0, 1});
+  return {
+      row("a morph weight", set("/nodes/MirrorBall/weights/0", 0.8)),
+      row("all weights", set("/nodes/GlassBall/weights", {0.3, -0.5})),
+      row("weight of a skinned mesh", set("/nodes/Ball/weights/1", 0.7)),
+      row("weight of a displaced mesh", set("/nodes/Post/weights/0", 0.5)),
+      row("no weights: those of the mesh", removed("/nodes/MirrorBall/weights")),
+      row("weights of the mesh", set("/meshes/MirrorBall/weights/1", 0.4)),
+      row("turn a joint", set("/nodes/Chest/rotation", {0, 0, 0.38268343, 0.92387953})),
+      row("move the root of the joints", set("/nodes/Hip/translation", {0.3, 0.4, -0.2})),
+      row("what holds the joints", set("/nodes/Rig/rotation", {0, 0.5, 0, 0.8660254})),
+      row("mirror a joint", set("/nodes/Chest/scale", {-1, 1, 1})),
+      row("flatten a joint", set("/nodes/Chest/scale", {1, 0, 1})),
+      row("a joint and a weight at once", set("/nodes/Chest/scale", {1.2, 0.8, 1}), set("/nodes/Ball/weights/0", 0.6)),
+      row("a second puppet", add("/nodes/Twin", {{"mesh", "Ball"}, {"skin", "Puppet"}, {"weights", {0, -0.4}}})),
+      row("without its skin", removed("/nodes/Twin/skin"), set("/nodes/Twin/translation", {1.4, 0.6, -0.9})),
+      row("with it again", add("/nodes/Twin/skin", "Puppet")),
+      row("another joint name", Json{{"op", "move"}, {"from", "/nodes/Chest"}, {"path", "/nodes/Thorax"}}),
+      row("turn it by that name", set("/nodes/Thorax/rotation", {0, 0, -0.258819, 0.9659258})),
+      row("hang a joint elsewhere", set("/nodes/Hip/children", Json::array()), add("/nodes/Rig/children/-", "Thorax")),
+      row("a joint's matrix", set("/nodes/Thorax", {{"matrix", identity}})),
+      row("hide the mesh", set("/nodes/Ball/extensions/KHR_node_visibility/visible", false)),
+      row("move joints of a hidden mesh", set("/nodes/Hip/translation", {-0.2, 0.5, -0.3})),
+      row("show it", set("/nodes/Ball/extensions/KHR_node_visibility/visible", true)),
+      row("another mesh", set("/nodes/Ball/mesh", "MirrorBall")),
+      row("a transform that counts for nothing", set("/nodes/Twin/translation", {0, 9, 0})),
+  };
+}
+
+TEST(DeformingEdits, ReplayedFramesAndTreesAreThoseOfAFullRender) {
+  for (const ViewOptions& view : {ViewOptions{1, 6, 0}, ViewOptions{1, 5, 2}, ViewOptions{4, 4, 0}}) {
+    SCOPED_TRACE(std::to_string(view.samples) + " samples, " + std::to_string(view.shadow_bits) + " shadow bits");
+    const std::uint32_t size = view.samples == 1 ? 1 : 2;
+    expect_full_renders(puppet_scene(88 / size, 66 / size), view, deforming_rows(), std::nullopt);
+  }
+}
+
+/// The paper's drag: the selection is out of the ray trees until it is released.
+TEST(DeformingEdits, ADraggedSkeletonLeavesTheFramesOfFullRenders) {
+  const ViewOptions view{1, 5, 0};
+  SceneState state = puppet_scene(88, 66);
+  Image image = preprocessed(state.scene(), view);
+  Replayer replayer(std::move(state), std::move(image));
+  for (int i = 1; i <= 5; ++i) {
+    const double angle = 0.2 * i;
+    replayer.drag(edit_of(Json::array({set("/nodes/Chest/rotation", {0, 0, std::sin(angle), std::cos(angle)}),
+                                       set("/nodes/MirrorBall/weights/0", 0.15 * i)})),
+                  "drag", ".");
+    const SceneState again = compiled_again(replayer.state());
+    EXPECT_EQ(different_pixels(replayer.image().frame, rendered(again.scene(), view)).size(), 0U) << i;
+  }
+  replayer.release();
+  const SceneState again = compiled_again(replayer.state());
+  const Image fresh = preprocessed(again.scene(), view);
+  EXPECT_EQ(different_pixels(replayer.image().frame, fresh.frame).size(), 0U);
+  EXPECT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
+}
+
+TEST(DeformingEdits, RandomWeightsAndJointsGiveTheFramesOfFullRenders) {
+  const std::uint64_t seed = seed_of_run();
+  SCOPED_TRACE("RELOOK_SEED=" + std::to_string(seed));
+  Dice dice(seed);
+  const ViewOptions view{1, 5, 1};
+  SceneState state = puppet_scene(60, 45);
+  Image image = preprocessed(state.scene(), view);
+  Replayer replayer(std::move(state), std::move(image));
+  for (int i = 0; i < 25; ++i) {
+    const Json random = random_deformation(dice);
+    SCOPED_TRACE(random.dump());
+    replayer.step(edit_of(random), "random", ".");
+    const SceneState again = compiled_again(replayer.state());
+    const Image fresh = preprocessed(again.scene(), view);
+    ASSERT_EQ(different_pixels(replayer.image().frame, fresh.frame).size(), 0U);
+    ASSERT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
+  }
 }
 
 std::vector<MatrixCase> all_cases() {

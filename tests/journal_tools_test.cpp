@@ -129,6 +129,40 @@ TEST_F(JournalTools, an_animation_of_nodes_is_a_drag) {
   EXPECT_TRUE(any_pixel_changed(replayed(at("scene.glb"), {})));
 }
 
+TEST_F(JournalTools, an_animation_of_morph_weights_is_a_drag) {
+  SceneFile file = scene_with_light();
+  file.primitive()["targets"] = {
+      {{"POSITION", file.floats({0, 0, 0, 0.5F, 0, 0, 0, 0.5F, 0, -0.5F, -0.5F, 0}, "VEC3", 3)}},
+      {{"POSITION", file.floats({0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, "VEC3", 3)}}};
+  file.gltf["meshes"][0]["weights"] = {0.25, 0};
+  const std::size_t times = file.floats({0, 1}, "SCALAR", 1);
+  animate(file, {{"node", 0}, {"path", "weights"}},
+          {{"input", times}, {"output", file.floats({0.25, 0, 1, 0.5}, "SCALAR", 1)}});
+  std::ofstream(at("scene.glb"), std::ios::binary) << file.glb();
+  const ProgramResult result = journal({"animation", at("scene.glb"), "--fps", "2"});
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const Json step = made()["steps"][0];
+  ASSERT_EQ(step["drag"].size(), 3);
+  EXPECT_EQ(step["drag"][1],
+            Json::parse(R"([{"op": "replace", "path": "/nodes/Square/weights", "value": [0.625, 0.25]}])"));
+  EXPECT_TRUE(any_pixel_changed(replayed(at("scene.glb"), {})));
+}
+
+TEST_F(JournalTools, an_animation_that_moves_nothing_makes_no_journal) {
+  SceneFile file = scene_with_light();
+  const std::size_t times = file.floats({0, 1}, "SCALAR", 1);
+  file.gltf["nodes"].push_back({{"name", "Empty"}});
+  const std::size_t empty = file.gltf["nodes"].size() - 1;
+  file.gltf["scenes"][0]["nodes"].push_back(empty);
+  animate(file, {{"node", empty}, {"path", "translation"}},
+          {{"input", times}, {"output", file.floats({0, 0, 0, 1, 0, 0}, "VEC3", 3)}});
+  std::ofstream(at("scene.glb"), std::ios::binary) << file.glb();
+  expect_refusal({"animation", at("scene.glb"), "--fps", "2"}, 2, "the animation moves nothing that the scene shows");
+  file.gltf["animations"][0]["samplers"][0]["output"] = file.floats({0, 0, 0, 0, 0, 0}, "VEC3", 3);
+  std::ofstream(at("scene.glb"), std::ios::binary) << file.glb();
+  expect_refusal({"animation", at("scene.glb")}, 2, "animation \"animation_0\" changes nothing of the scene");
+}
+
 TEST_F(JournalTools, an_animation_of_other_properties_is_an_edit_a_frame) {
   SceneFile file = scene_with_light();
   const std::size_t times = file.floats({1, 2}, "SCALAR", 1);

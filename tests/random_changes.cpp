@@ -130,6 +130,33 @@ void change_geometry(Change& change, const Json& look, Dice& dice) {
 
 }  // namespace
 
+Json random_deformation(Dice& dice) {
+  Json edit = Json::array();
+  const auto set = [&](const std::string& pointer, Json value) {
+    edit.push_back({{"op", "replace"}, {"path", pointer}, {"value", std::move(value)}});
+  };
+  const std::size_t count = 1 + dice.below(3);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string joint = "/nodes/" + dice.one_of(std::vector<std::string>{"Rig", "Hip", "Chest"});
+    const std::string morphed =
+        "/nodes/" + dice.one_of(std::vector<std::string>{"Ball", "MirrorBall", "GlassBall", "Post"});
+    switch (dice.below(5)) {
+      case 0:
+        set(joint + "/translation", {dice.between(-0.5, 0.5), dice.between(-0.2, 0.8), dice.between(-0.5, 0.5)});
+        break;
+      case 1:
+        set(joint + "/rotation", {dice.between(-1, 1), dice.between(-1, 1), dice.between(-1, 1), 1});
+        break;
+      case 2:
+        set(joint + "/scale", {dice.between(0.6, 1.3), dice.between(-1, 1), 1});
+        break;
+      default:
+        set(morphed + "/weights/" + std::to_string(dice.below(2)), dice.chance(0.3) ? 0.0 : dice.between(-1, 1));
+    }
+  }
+  return edit;
+}
+
 Change random_change(const Json& look, Dice& dice) {
   Change change;
   const std::size_t count = dice.chance(0.7) ? 1 : 2 + dice.below(2);

@@ -38,6 +38,9 @@ class Dice {
   std::function<std::uint64_t()> next_;
 };
 
+/// One to three edits of weights and joints of puppet_scene().
+[[nodiscard]] Json random_deformation(Dice& dice);
+
 /// An edit and what undoes it.
 struct Change {
   std::vector<Json> forward, backward;  // operations, in order

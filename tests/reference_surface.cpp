@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "reference_tracer.h"
+#include "scene/deformation.h"
 #include "scene/displacement.h"
 #include "scene/procedural.h"
 
@@ -87,10 +88,15 @@ std::optional<AxisOfMap> smooth_frame(const Mesh& mesh, std::size_t set, std::ui
 
 }  // namespace
 
+Mesh shaped_mesh(const Scene& scene, const Object& object) {
+  const Mesh& mesh = scene.mesh(object.mesh);
+  Mesh shaped = object.deformation ? deformed(mesh, *object.deformation) : mesh;
+  return object.displacement ? displaced(shaped, *object.displacement) : shaped;
+}
+
 std::vector<WorldTriangle> world_triangles(const Scene& scene, std::uint32_t index) {
   const Object& object = scene.objects[index];
-  const Mesh mesh =
-      object.displacement ? displaced(scene.mesh(object.mesh), *object.displacement) : scene.mesh(object.mesh);
+  const Mesh mesh = shaped_mesh(scene, object);
   std::vector<WorldTriangle> triangles;
   for (const auto& [a, b, c] : mesh.triangles)
     triangles.push_back({to_world(object, Vec(mesh.positions[a])), to_world(object, Vec(mesh.positions[b])),
@@ -111,8 +117,8 @@ LineHit intersect(const WorldTriangle& triangle, Vec origin, Vec direction, doub
 }
 
 const Mesh& ReferenceTracer::mesh_of(std::uint32_t object) const {
-  const auto found = displaced_.find(object);
-  return found != displaced_.end() ? found->second : scene_.mesh(scene_.objects[object].mesh);
+  const auto found = shaped_.find(object);
+  return found != shaped_.end() ? found->second : scene_.mesh(scene_.objects[object].mesh);
 }
 
 bool ReferenceTracer::is_hole(const WorldTriangle& triangle, double u, double v) const {

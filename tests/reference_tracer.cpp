@@ -72,7 +72,7 @@ ReferenceTracer::ReferenceTracer(const Scene& scene, std::uint32_t max_depth) : 
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     if (!object.alive) continue;
-    if (object.displacement) displaced_[i] = displaced(scene.mesh(object.mesh), *object.displacement);
+    if (object.deformation || object.displacement) shaped_[i] = shaped_mesh(scene, object);
     for (const WorldTriangle& triangle : world_triangles(scene, i)) triangles_.push_back(triangle);
   }
 }

@@ -1,6 +1,6 @@
 // The oracle of the picture: SHADING.md once more, slow and obvious. Double precision, brute force over all triangles,
 // recursive, one sample in the middle of each pixel. Shares no code with the renderer beyond what the specification
-// takes as given: texture and procedural values, camera rays, surface_optics and displaced meshes.
+// takes as given: texture and procedural values, camera rays, surface_optics, deformed and displaced meshes.
 #pragma once
 #include <ImathVec.h>
 
@@ -23,7 +23,9 @@ struct WorldTriangle {
   std::uint32_t object = 0, primitive = 0;
 };
 
-/// Triangles of one object, displaced, in world space.
+/// The mesh of an object, deformed and displaced.
+[[nodiscard]] Mesh shaped_mesh(const Scene& scene, const Object& object);
+/// Triangles of one object, deformed and displaced, in world space.
 [[nodiscard]] std::vector<WorldTriangle> world_triangles(const Scene& scene, std::uint32_t object);
 
 /// Where the line origin + t * direction meets the triangle's plane; `inside` when the barycentrics are >= -slack.
@@ -101,7 +103,7 @@ class ReferenceTracer {
   const Scene& scene_;
   std::uint32_t max_depth_;
   std::vector<WorldTriangle> triangles_;
-  std::map<std::uint32_t, Mesh> displaced_;  // by object
+  std::map<std::uint32_t, Mesh> shaped_;  // by object: deformed and displaced
 
   [[nodiscard]] const Mesh& mesh_of(std::uint32_t object) const;
 };

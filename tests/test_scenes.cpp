@@ -186,6 +186,12 @@ int SceneBuilder::node(const std::string& name, Json value) {
   return index;
 }
 
+int SceneBuilder::skin(const std::string& name, const std::vector<int>& joints, std::vector<Transform> inverse_binds) {
+  gltf_.gltf["skins"].push_back({{"name", name}, {"joints", joints}});
+  gltf_.inverse_binds.push_back(std::move(inverse_binds));
+  return last_index(gltf_.gltf["skins"]);
+}
+
 void SceneBuilder::adopt(int parent, int child) {
   Json& roots = gltf_.gltf["scenes"][0]["nodes"];
   for (std::size_t i = 0; i < roots.size(); ++i)

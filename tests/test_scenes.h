@@ -42,6 +42,8 @@ class SceneBuilder {
   void light(const std::string& name, Json light, Json placement);
   void ambient(Color color);
   void environment(const Json& value);
+  /// A skin of these nodes; `inverse_binds`: a matrix a joint.
+  int skin(const std::string& name, const std::vector<int>& joints, std::vector<Transform> inverse_binds);
   /// A node hung below another one instead of being a root.
   void adopt(int parent, int child);
   void look_at(Point eye, Point target, float vertical_degrees, std::uint32_t width, std::uint32_t height);
@@ -63,6 +65,10 @@ class SceneBuilder {
 /// (c) clearcoat, sheen, specular, normal maps, emission, procedural textures, blinn-phong, displacement, vertex
 /// colours, a negative scale and coincident duplicates.
 [[nodiscard]] SceneState study_scene(std::uint32_t width, std::uint32_t height);
+
+/// (d) not of the matrix: a ball that is morphed and, by joints Hip and Chest, skinned (node Ball), a mirror and glass
+/// that are morphed (MirrorBall, GlassBall), and a morphed and displaced Post.
+[[nodiscard]] SceneState puppet_scene(std::uint32_t width, std::uint32_t height);
 
 enum class TestScene { spheres, cards, study };
 [[nodiscard]] SceneState test_scene(TestScene scene, std::uint32_t width, std::uint32_t height);

@@ -14,8 +14,22 @@ namespace {
 
 constexpr std::int64_t kMostValues = std::int64_t{1} << 40;
 constexpr float kLargestNumber = 1e18F;
-constexpr std::array<const char*, 10> kColumns{"positions", "triangles", "normals", "tangents",  "uv0",
-                                               "uv1",       "colors",    "bounds",  "min_alpha", "instances"};
+constexpr std::array<const char*, 16> kColumns{"positions",
+                                               "triangles",
+                                               "normals",
+                                               "tangents",
+                                               "uv0",
+                                               "uv1",
+                                               "colors",
+                                               "bounds",
+                                               "min_alpha",
+                                               "target_positions",
+                                               "target_normals",
+                                               "target_tangents",
+                                               "joints",
+                                               "joint_weights",
+                                               "inverse_binds",
+                                               "instances"};
 
 template <class T>
 void check_numbers(const std::vector<T>& values, const char* section) {
@@ -54,6 +68,13 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
+Json target_entries(const Mesh& mesh) {
+  Json entries = Json::array();
+  for (const MorphTarget& target : mesh.targets)
+    entries.push_back({target.positions.size(), target.normals.size(), target.tangents.size()});
+  return entries;
+}
+
 Json mesh_entry(const Mesh& mesh) {
   return {{"name", mesh.name},
           {"primitive", mesh.primitive},
@@ -63,7 +84,9 @@ Json mesh_entry(const Mesh& mesh) {
           {"tangents", mesh.tangents.size()},
           {"uv0", mesh.uv[0].size()},
           {"uv1", mesh.uv[1].size()},
-          {"colors", mesh.colors.size()}};
+          {"colors", mesh.colors.size()},
+          {"targets", target_entries(mesh)},
+          {"joints", mesh.joints.size()}};
 }
 
 Json names_entry(const LookDocument& document) {
@@ -73,6 +96,9 @@ Json names_entry(const LookDocument& document) {
   Json instances = Json::array();
   for (const auto& [node, matrices] : document.instances)
     instances.push_back({{"node", node}, {"count", matrices.size()}});
+  Json skins = Json::array();
+  for (const auto& [skin, matrices] : document.inverse_binds)
+    skins.push_back({{"skin", skin}, {"count", matrices.size()}});
   Json groups = Json::object();
   for (const auto& [name, ids] : document.assets->mesh_primitives) {
     Json& group = groups[name] = Json::array();
@@ -81,7 +107,8 @@ Json names_entry(const LookDocument& document) {
   Json meshes = Json::array();
   for (const Mesh& mesh : document.assets->meshes) meshes.push_back(mesh_entry(mesh));
   return {{"order", std::move(order)},   {"instances", std::move(instances)}, {"groups", std::move(groups)},
-          {"meshes", std::move(meshes)}, {"cameras", document.cameras},       {"file", document.file}};
+          {"meshes", std::move(meshes)}, {"cameras", document.cameras},       {"file", document.file},
+          {"skins", std::move(skins)}};
 }
 
 /// Runs a reader of JSON that this program has written: what does not fit is damage, not bad input.
@@ -108,10 +135,17 @@ struct GeometryColumns {
         uv1(reader, "uv1"),
         colors(reader, "colors"),
         bounds(reader, "bounds"),
-        min_alpha(reader, "min_alpha") {}
+        min_alpha(reader, "min_alpha"),
+        target_positions(reader, "target_positions"),
+        target_normals(reader, "target_normals"),
+        target_tangents(reader, "target_tangents"),
+        joints(reader, "joints"),
+        joint_weights(reader, "joint_weights") {}
   void finish() const {
     positions.finish(), triangles.finish(), normals.finish(), tangents.finish(), uv0.finish(), uv1.finish();
     colors.finish(), bounds.finish(), min_alpha.finish();
+    target_positions.finish(), target_normals.finish(), target_tangents.finish();
+    joints.finish(), joint_weights.finish();
   }
 
   Cutter<Point> positions;
@@ -122,7 +156,44 @@ struct GeometryColumns {
   Cutter<Rgba> colors;
   Cutter<Point> bounds;
   Cutter<float> min_alpha;
+  Cutter<Imath::V3f> target_positions, target_normals, target_tangents;
+  Cutter<std::uint16_t> joints;
+  Cutter<float> joint_weights;
 };
+
+/// Columns that are there and not as long as the vertices are damage.
+void read_targets(const JsonView& entries, GeometryColumns& columns, Mesh& mesh) {
+  entries.require_array();
+  mesh.targets.reserve(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const JsonView sizes = entries.at(i);
+    const auto take = [&](std::size_t column, Cutter<Imath::V3f>& values) {
+      const auto size = static_cast<std::uint64_t>(sizes.at(column).integer(0, kMostValues));
+      check_sound(size == 0 || size == mesh.positions.size(),
+                  "a morph target that is not as long as mesh " + printable(mesh.name));
+      return values.take(size);
+    };
+    MorphTarget& target = mesh.targets.emplace_back();
+    target.positions = take(0, columns.target_positions);
+    target.normals = take(1, columns.target_normals);
+    target.tangents = take(2, columns.target_tangents);
+    check_sound(
+        (target.normals.empty() || !mesh.normals.empty()) && (target.tangents.empty() || !mesh.tangents.empty()),
+        "a morph target of a column that is missing in mesh " + printable(mesh.name));
+  }
+}
+
+/// As many joints for each vertex, and of their weights the sum that the importer makes.
+void read_joints(const JsonView& entry, GeometryColumns& columns, Mesh& mesh) {
+  const std::uint64_t count = size_at(entry, "joints");
+  mesh.joints = columns.joints.take(count);
+  mesh.joint_weights = columns.joint_weights.take(count);
+  if (count == 0) return;
+  const std::string name = printable(mesh.name);
+  check_sound(!mesh.positions.empty() && count % mesh.positions.size() == 0, "joints that do not fit mesh ", name);
+  for (const float weight : mesh.joint_weights)
+    check_sound(weight >= 0 && weight <= 2, "a weight of a joint that is out of range in mesh ", name);
+}
 
 Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
   Mesh mesh;
@@ -134,6 +205,8 @@ Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
   mesh.tangents = columns.tangents.take(size_at(entry, "tangents"));
   mesh.uv = {columns.uv0.take(size_at(entry, "uv0")), columns.uv1.take(size_at(entry, "uv1"))};
   mesh.colors = columns.colors.take(size_at(entry, "colors"));
+  read_targets(entry.at("targets"), columns, mesh);
+  read_joints(entry, columns, mesh);
   const std::vector<Point> corners = columns.bounds.take(2);
   mesh.bounds = Box(corners[0], corners[1]);
   mesh.min_alpha = columns.min_alpha.take(1)[0];
@@ -181,15 +254,36 @@ void read_names(const JsonView& names, LookDocument& document, Assets& assets) {
   document.file = names.at("file").text();
 }
 
-void read_instances(const JsonView& names, Cutter<Transform> matrices, LookDocument& document) {
-  const JsonView instances = names.at("instances");
-  instances.require_array();
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    const JsonView entry = instances.at(i);
-    document.instances[entry.at("node").text()] = matrices.take(size_at(entry, "count"));
+/// Matrices of owners that `entries` list, by their names in `key`.
+void read_matrices(const JsonView& entries, const char* key, Cutter<Transform> matrices,
+                   std::map<std::string, std::vector<Transform>, std::less<>>& of_owners) {
+  entries.require_array();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const JsonView entry = entries.at(i);
+    of_owners[entry.at(key).text()] = matrices.take(size_at(entry, "count"));
   }
   matrices.finish();
 }
+
+/// Not as meshes are kept, which share a vertex's columns: a target may have fewer of them.
+struct DeformingColumns {
+  std::vector<Imath::V3f> positions, normals, tangents;
+  std::vector<std::uint16_t> joints;
+  std::vector<float> weights;
+
+  void add(const Mesh& mesh) {
+    for (const MorphTarget& target : mesh.targets)
+      append(positions, target.positions), append(normals, target.normals), append(tangents, target.tangents);
+    append(joints, mesh.joints), append(weights, mesh.joint_weights);
+  }
+  void write(ContainerWriter& writer) const {
+    writer.add_column("target_positions", positions, 4);
+    writer.add_column("target_normals", normals, 4);
+    writer.add_column("target_tangents", tangents, 4);
+    writer.add_column("joints", joints, 2);
+    writer.add_column("joint_weights", weights, 4);
+  }
+};
 
 }  // namespace
 
@@ -203,7 +297,9 @@ Bytes encode_geometry(const LookDocument& document, const CacheIdentity& identit
   Mesh all;
   std::vector<Point> bounds;
   std::vector<float> min_alpha;
+  DeformingColumns deforming;
   for (const Mesh& mesh : document.assets->meshes) {
+    deforming.add(mesh);
     append(all.positions, mesh.positions);
     append(all.triangles, mesh.triangles);
     append(all.normals, mesh.normals);
@@ -215,8 +311,9 @@ Bytes encode_geometry(const LookDocument& document, const CacheIdentity& identit
     bounds.push_back(mesh.bounds.max);
     min_alpha.push_back(mesh.min_alpha);
   }
-  std::vector<Transform> instances;
+  std::vector<Transform> instances, inverse_binds;
   for (const auto& [node, matrices] : document.instances) append(instances, matrices);
+  for (const auto& [skin, matrices] : document.inverse_binds) append(inverse_binds, matrices);
 
   ContainerWriter writer;
   writer.add("names", bytes_of(json_text(names_entry(document))));
@@ -229,6 +326,8 @@ Bytes encode_geometry(const LookDocument& document, const CacheIdentity& identit
   writer.add_column("colors", all.colors, 4);
   writer.add_column("bounds", bounds, 4);
   writer.add_column("min_alpha", min_alpha, 4);
+  deforming.write(writer);
+  writer.add_column("inverse_binds", inverse_binds, 4);
   writer.add_column("instances", instances, 4);
   return writer.finish(identity);
 }
@@ -254,7 +353,8 @@ void decode_geometry(BytesView file, const CacheIdentity& identity, LookDocument
     for (std::size_t i = 0; i < meshes.size(); ++i) assets.meshes.push_back(read_mesh(meshes.at(i), columns));
     columns.finish();
     read_names(names, document, assets);
-    read_instances(names, Cutter<Transform>(reader, "instances"), document);
+    read_matrices(names.at("instances"), "node", Cutter<Transform>(reader, "instances"), document.instances);
+    read_matrices(names.at("skins"), "skin", Cutter<Transform>(reader, "inverse_binds"), document.inverse_binds);
   });
   share = ImportShare();  // from here on with what has been made of it
   count_geometry(document);

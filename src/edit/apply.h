@@ -39,6 +39,9 @@ void check_drag_scope(const SceneState& state, const JournalStep& step, std::siz
 /// included. Its price follows from the edits. Call it before anything holds on to the scene's assets.
 [[nodiscard]] std::vector<std::string> check_journal(SceneState& state, const Journal& journal);
 
+/// Does a step of a journal that passed check_journal() change any value of the scene? Rehearses it, too.
+[[nodiscard]] bool changes_scene(SceneState& state, const Journal& journal);
+
 /// Does a step of a journal that passed check_journal() change rays or what they meet (optical, geometric)? Rehearses
 /// it, too.
 [[nodiscard]] bool shoots_rays(SceneState& state, const Journal& journal);

@@ -20,7 +20,8 @@ Renames renames_for(const LookDocument& part, const LookDocument& document, cons
     UniqueNames unique([&](const std::string& candidate) {
       const bool is_geometry = section == "meshes" && document.assets->mesh_primitives.contains(candidate);
       return document.look[section].contains(candidate) || is_geometry ||
-             (section == "nodes" && document.instances.contains(candidate));
+             (section == "nodes" && document.instances.contains(candidate)) ||
+             (section == "skins" && document.inverse_binds.contains(candidate));
     });
     for (const auto& item : part.look[section].items())
       renames[s].emplace(item.key(), unique.give(prefix + item.key()));
@@ -103,6 +104,11 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
     new_instances_.push_back(renamed(Section::nodes, name));
     document().instances[new_instances_.back()] = std::move(matrices);
   }
+  for (auto& [name, matrices] : part.inverse_binds) {
+    new_inverse_binds_.push_back(renamed(Section::skins, name));
+    document().inverse_binds[new_inverse_binds_.back()] = std::move(matrices);
+  }
+  part.inverse_binds.clear();
   count_geometry(part);  // nothing is left there
   count_geometry(document());
   for (std::size_t s = 0; s < kSectionCount; ++s) {
@@ -119,6 +125,7 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
         if (entry.contains("primitives"))
           for (Json& primitive : entry["primitives"]) primitive.erase("extensions");  // variants of the asset's own
       }
+      if (section == Section::skins) entry["extras"]["relook"]["inverseBinds"] = name;
       if (section == Section::nodes) {
         entry.erase("camera");
         if (document().instances.contains(name)) entry["extras"]["relook"]["instances"] = name;

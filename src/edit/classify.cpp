@@ -67,6 +67,13 @@ std::string object_name(const Object& object) {
   return name;
 }
 
+std::string describe_deformation(const Object& before, const Object& after) {
+  static const Deformation kNone;
+  const Deformation& old = before.deformation ? *before.deformation : kNone;
+  const Deformation& now = after.deformation ? *after.deformation : kNone;
+  return old.joints == now.joints ? "morph weights changed" : "its joints are transformed";
+}
+
 void classify_object(const Scene& scene, const SceneDelta& delta, const SceneDelta::ObjectChange& change,
                      Findings& findings) {
   const Object& before = change.before;
@@ -75,6 +82,8 @@ void classify_object(const Scene& scene, const SceneDelta& delta, const SceneDel
   if (before.alive != after.alive)
     return findings.add(ChangeClass::geometric, name + (after.alive ? " appears" : " disappears"));
   if (before.mesh != after.mesh) return findings.add(ChangeClass::geometric, name + ": another mesh");
+  if (before.deformation != after.deformation)
+    return findings.add(ChangeClass::geometric, name + ": " + describe_deformation(before, after));
   if (before.displacement != after.displacement)
     return findings.add(ChangeClass::geometric, name + (!before.displacement  ? ": displacement map added"
                                                         : !after.displacement ? ": displacement map removed"

@@ -29,6 +29,8 @@ bool is_node_transform(const Tokens& path) {
          (path[2] == "translation" || path[2] == "rotation" || path[2] == "scale");
 }
 
+bool is_morph(const Tokens& path) { return path.size() == 3 && path[0] == "nodes" && path[2] == "weights"; }
+
 /// The node of the active camera or one above it.
 bool holds_camera(const SceneState& state, const std::string& node) {
   for (std::string at = state.scene().camera.node; !at.empty(); at = state.parent_of(at))
@@ -70,7 +72,9 @@ std::string obstacle(const SceneState& state, const AnimationChannel& channel, T
     track.last = document.look[place];
   else if (!track.field->unwritten)
     return entity + " has no such value";
-  const std::size_t width = track.field->kind == FieldKind::reals ? track.field->count : 1;
+  const std::size_t width = track.field->kind != FieldKind::reals ? 1
+                            : track.field->count == 0             ? track.last.size()
+                                                                  : track.field->count;
   if (channel.width != width)
     throw InputError(
         document.file, channel.where,
@@ -119,7 +123,11 @@ std::vector<double> sample_times(const std::vector<Track>& tracks, const SampleT
     throw InputError(file, "",
                      "animation \"" + name + "\" has more than " + Json(kMostAnimationFrames).dump() +
                          " frames; fewer with --fps, --from, --to");
-  if ((steps + 1) * static_cast<double>(tracks.size()) > kMostAnimatedValues)
+  constexpr std::size_t kNumbersOfValue = 4;  // of a rotation; many morph weights count as several values
+  double values = 0;
+  for (const Track& track : tracks)
+    values += static_cast<double>((track.channel->width + kNumbersOfValue - 1) / kNumbersOfValue);
+  if ((steps + 1) * values > kMostAnimatedValues)
     throw InputError(file, "",
                      "animation \"" + name + "\" has more than " + Json(kMostAnimatedValues).dump() +
                          " values in its frames; fewer with --fps, --from, --to");
@@ -161,11 +169,13 @@ JournalDraft draft_animation(const SceneState& state, const Animation& animation
     throw InputError(file, "",
                      "no journal can express animation \"" + animation.name + "\"" +
                          (draft.warnings.empty() ? ": it has no channels" : ": " + draft.warnings.front()));
-  const bool is_drag =
-      std::all_of(tracks.begin(), tracks.end(), [](const Track& track) { return is_node_transform(track.path); });
+  const bool is_drag = std::ranges::all_of(
+      tracks, [](const Track& track) { return is_node_transform(track.path) || is_morph(track.path); });
+  bool has_edits = false;
   Json entries = Json::array();
   for (const double time : sample_times(tracks, times, file, animation.name)) {
     Json edit = edit_at(tracks, time);
+    has_edits = has_edits || !edit.empty();
     if (is_drag)
       entries.push_back(std::move(edit));
     else
@@ -173,6 +183,7 @@ JournalDraft draft_animation(const SceneState& state, const Animation& animation
           {{"name", animation.name + " at " + Json(short_real(static_cast<float>(time))).dump() + " s"},
            {"edit", std::move(edit)}});
   }
+  if (!has_edits) throw InputError(file, "", "animation \"" + animation.name + "\" changes nothing of the scene");
   if (is_drag)
     draft.steps.push_back(
         {{"name", animation.name}, {"select", selection_of(state, tracks)}, {"drag", std::move(entries)}});

@@ -12,10 +12,12 @@ namespace relook {
 namespace {
 
 const Json::json_pointer kGeometry("/extras/relook/geometry");
+const Json::json_pointer kInverseBinds("/extras/relook/inverseBinds");
 
 bool equal(const Mesh& a, const Mesh& b) {
   return a.primitive == b.primitive && a.positions == b.positions && a.triangles == b.triangles &&
-         a.normals == b.normals && a.tangents == b.tangents && a.uv == b.uv && a.colors == b.colors;
+         a.normals == b.normals && a.tangents == b.tangents && a.uv == b.uv && a.colors == b.colors &&
+         a.targets == b.targets && a.joints == b.joints && a.joint_weights == b.joint_weights;
 }
 
 bool equal(const EncodedImage& a, const EncodedImage& b) {
@@ -45,7 +47,7 @@ class Differ {
 
   DiffDraft run() {
     for (const Section section : {Section::samplers, Section::images, Section::textures, Section::materials,
-                                  Section::lights, Section::meshes, Section::nodes})
+                                  Section::lights, Section::meshes, Section::skins, Section::nodes})
       diff_section(section);
     diff({"scene"}, before_.look["scene"], after_.look["scene"]);
     remove_rest();
@@ -106,6 +108,7 @@ class Differ {
       Json to = editable(section, item.value());
       if (section == Section::meshes && !name_geometry(item.key(), to)) continue;
       if (section == Section::nodes) check_instances(item.key());
+      if (section == Section::skins) name_inverse_binds(item.key(), to);
       if (from.is_null())
         add_operation("add", {name, item.key()}, std::move(to));
       else if (from != to && is_another_kind(section, from, to))
@@ -200,6 +203,19 @@ class Differ {
     for (const MeshToWrite& mesh : geometry_) add_operation("remove", {"meshes", carrier_ + "/" + mesh.name});
   }
 
+  /// Puts the name that its matrices have in `before_` into a skin of `after_`.
+  void name_inverse_binds(const std::string& skin, Json& value) const {
+    const std::vector<Transform>& wanted = after_.inverse_binds.at(value[kInverseBinds].get<std::string>());
+    const auto& known = before_.inverse_binds;
+    auto found = known.find(skin);
+    if (found == known.end() || found->second != wanted)
+      found = std::ranges::find_if(known, [&](const auto& entry) { return entry.second == wanted; });
+    if (found == known.end())
+      throw InputError(after_.file, "",
+                       "skin \"" + skin + "\" has other inverse bind matrices, which no journal can say");
+    value[kInverseBinds] = found->first;
+  }
+
   void check_instances(const std::string& node) const {
     const auto now = after_.instances.find(node), then = before_.instances.find(node);
     if (now == after_.instances.end() || !after_.look["nodes"][node].contains("mesh")) return;
@@ -213,7 +229,7 @@ class Differ {
     for (const auto& node : olds.items())
       if (!news.contains(node.key()) && !node.value()["children"].empty())
         add_operation("replace", {"nodes", node.key(), "children"}, Json::array());
-    for (const Section section : {Section::nodes, Section::meshes, Section::lights, Section::materials,
+    for (const Section section : {Section::skins, Section::nodes, Section::meshes, Section::lights, Section::materials,
                                   Section::textures, Section::images, Section::samplers}) {
       const std::string name(section_name(section));
       for (const auto& item : before_.look[name].items())

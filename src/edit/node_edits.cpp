@@ -58,12 +58,35 @@ void Transaction::remove_node(const std::string& name) {
     touch(TouchedEntity{"nodes", node});
     document().look["nodes"].erase(node);
     touched_nodes_.erase(node);
+    replace_joint(node, "");
   }
 }
 
 void Transaction::rename_node(const std::string& from, const std::string& to) {
   const std::string parent = current_parent(from);
   if (parent != to) replace_mention(parent, from, to);
+  replace_joint(from, to);
+}
+
+/// Gives a joint its new name in all skins. A skin goes with the last of its joints (by ""); one that keeps others
+/// keeps its mention of what is removed, which the compiler refuses.
+void Transaction::replace_joint(const std::string& joint, const std::string& by) {
+  Json* skins = find({"skins", ""});
+  if (skins == nullptr || !skins->is_object()) return;
+  std::vector<std::string> mentioning;
+  for (const auto& skin : skins->items())
+    if (skin.value().is_object() && skin.value().contains("joints") && skin.value()["joints"].is_array() &&
+        std::ranges::find(skin.value()["joints"], Json(joint)) != skin.value()["joints"].end())
+      mentioning.push_back(skin.key());
+  for (const std::string& name : mentioning) {
+    touch(TouchedEntity{"skins", name});
+    Json& joints = (*skins)[name]["joints"];
+    if (!by.empty()) std::ranges::replace(joints, Json(joint), Json(by));
+    const auto is_there = [&](const Json& other) {
+      return other.is_string() && find({"nodes", other.get<std::string>()}) != nullptr;
+    };
+    if (by.empty() && std::ranges::none_of(joints, is_there)) skins->erase(name);
+  }
 }
 
 /// A copied node's descendants are copied too, as "<copy>/<name>": a node has one parent.

@@ -36,6 +36,12 @@ class Rehearsal {
     return is_beyond_color_;
   }
 
+  /// Requires a journal without errors.
+  [[nodiscard]] bool finds_change() {
+    static_cast<void>(run());
+    return is_change_;
+  }
+
   std::vector<std::string> run() {
     try {
       for (const JournalStep& step : journal_.steps) try_step(step);
@@ -74,6 +80,7 @@ class Rehearsal {
       transaction.undo();
       throw;
     }
+    is_change_ = is_change_ || changes_scene;
     if (!changes_scene && !is_guard(frames)) warn(step, transaction.has_changes());
     done_.absorb(std::move(transaction));
   }
@@ -96,7 +103,7 @@ class Rehearsal {
   StepErrors errors_;
   std::vector<std::string> warnings_;
   std::size_t idle_steps_ = 0;  // that change nothing
-  bool notes_classes_ = false, is_beyond_color_ = false;
+  bool notes_classes_ = false, is_beyond_color_ = false, is_change_ = false;
 };
 
 }  // namespace
@@ -104,6 +111,8 @@ class Rehearsal {
 std::vector<std::string> check_journal(SceneState& state, const Journal& journal) {
   return Rehearsal(state, journal).run();
 }
+
+bool changes_scene(SceneState& state, const Journal& journal) { return Rehearsal(state, journal).finds_change(); }
 
 bool shoots_rays(SceneState& state, const Journal& journal) {
   return Rehearsal(state, journal).finds_class_beyond_color();

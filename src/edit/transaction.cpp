@@ -96,6 +96,7 @@ void Transaction::absorb(Transaction&& later) {
   append(new_geometry_, later.new_geometry_);
   append(new_images_, later.new_images_);
   append(new_instances_, later.new_instances_);
+  append(new_inverse_binds_, later.new_inverse_binds_);
   copied_ += later.copied_;
 }
 
@@ -336,6 +337,7 @@ void Transaction::restore_document() {
   for (const std::string& geometry : new_geometry_) assets.mesh_primitives.erase(geometry);
   for (const std::string& image : new_images_) assets.images.erase(image);
   for (const std::string& instances : new_instances_) document().instances.erase(instances);
+  for (const std::string& skin : new_inverse_binds_) document().inverse_binds.erase(skin);
 }
 
 /// Says which operation wrote the value that the compiler refuses.

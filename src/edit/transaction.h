@@ -70,6 +70,7 @@ class Transaction {
   void rename_node(const std::string& from, const std::string& to);
   void copy_descendants(const std::string& copy, const PatchPlace& place);
   [[nodiscard]] std::string current_parent(const std::string& node);
+  void replace_joint(const std::string& joint, const std::string& by);
   void replace_mention(const std::string& parent, const std::string& child, const std::string& by);
 
   // asset_edits.cpp: files that an edit brings in.
@@ -90,7 +91,7 @@ class Transaction {
   Extent copied_before_, copied_;          // by "copy", in earlier transactions and in this one
   std::map<TouchedEntity, Extent> grown_;  // entries that copies were made into, as they are then
   std::size_t mesh_count_;
-  std::vector<std::string> new_geometry_, new_images_, new_instances_;
+  std::vector<std::string> new_geometry_, new_images_, new_instances_, new_inverse_binds_;
 };
 
 }  // namespace relook

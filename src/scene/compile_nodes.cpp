@@ -54,6 +54,7 @@ void Compilation::update_nodes(const Entities& entities) {
   for (const Entity& entity : entities)
     if (is_touched_node(entity) && entity.value == nullptr) forget_node(entity.place.name);
   for (const NodeVisit& visit : visits(entities)) visit_subtree(visit);
+  update_skinned();
   update_light_order();
 }
 
@@ -181,9 +182,44 @@ bool Compilation::visit_node(const std::string& name, const Json& node, NodeReco
   record.visible = visible;
   record.is_compiled = true;
   record.last_visit = index_.runs;
-  update_objects(name, node, record);
+  if (node.contains("skin"))
+    skinned_.insert(name);
+  else
+    update_objects(name, node, record);
   update_light(name, node, record);
+  if (is_changed) note_skins_of(name);
   return is_changed;
+}
+
+/// Nodes whose skin has this joint.
+void Compilation::note_skins_of(const std::string& joint) {
+  if (!notes_history_ || document_.look["skins"].empty()) return;  // at first all nodes are visited
+  const auto users = index_.users.find({"nodes", joint});
+  if (users == index_.users.end()) return;
+  for (const TouchedEntity& skin : users->second) {
+    const auto nodes = skin.section == "skins" ? index_.users.find(skin) : index_.users.end();
+    if (nodes == index_.users.end()) continue;
+    for (const TouchedEntity& node : nodes->second) skinned_.insert(node.name);
+  }
+}
+
+void Compilation::update_skinned() {
+  for (const std::string& name : skinned_) {
+    const auto node = index_.nodes.find(name);
+    const Json* value = node == index_.nodes.end() ? nullptr : value_of({"nodes", name});
+    if (value == nullptr) continue;  // removed
+    note(name, node->second);
+    update_objects(name, *value, node->second);
+  }
+}
+
+Pose Compilation::pose_of(const Json& node) const {
+  const auto name = node.find("skin");
+  if (name == node.end()) return {};
+  const Json& skin = document_.look["skins"][name->get_ref<const std::string&>()];
+  const auto& key = skin["extras"]["relook"]["inverseBinds"].get_ref<const std::string&>();
+  return posed(skin, document_.inverse_binds.find(key)->second,
+               [&](const std::string& joint) { return index_.nodes.at(joint).world; });
 }
 
 /// Local matrices of EXT_mesh_gpu_instancing, or nullptr.
@@ -204,21 +240,29 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
     if (const Json* displacement = member_at(node, {"extras", "relook", "displacement"}))
       object.displacement =
           compile_displacement(context_, *displacement, node_pointer(name) + "/extras/relook/displacement");
-    const std::vector<Transform>* instances = instances_of(node);
-    const std::size_t instance_count = instances == nullptr ? 1 : instances->size();
+    const Json* weights = weights_of(node, mesh);
+    const Pose pose = pose_of(node);
     for (MeshId mesh_id : document_.assets->mesh_primitives.find(geometry)->second) {
       object.mesh = mesh_id;
-      if (object.displacement && displaced_triangles(document_.assets->meshes[mesh_id.index()], *object.displacement) >
-                                     kMostDisplacedTriangles)
+      const Mesh& shape = document_.assets->meshes[mesh_id.index()];
+      object.deformation = deformation_of(shape, weights, pose);
+      const bool is_skinned = object.deformation && !(*object.deformation).joints.empty();
+      if (is_skinned && shape.joint_count() > pose.joints.size())
+        fail(node_pointer(name) + "/skin", "the mesh names joint " + std::to_string(shape.joint_count() - 1) +
+                                               ", the skin has " + std::to_string(pose.joints.size()) + " joints");
+      const std::vector<Transform>* instances = is_skinned ? nullptr : instances_of(node);
+      const std::size_t instance_count = instances == nullptr ? 1 : instances->size();
+      if (object.displacement && displaced_triangles(shape, *object.displacement) > kMostDisplacedTriangles)
         fail(node_pointer(name) + "/extras/relook/displacement/subdivide", "this makes too many triangles");
-      object.primitive = document_.assets->meshes[mesh_id.index()].primitive;
+      object.primitive = shape.primitive;
       const Json& primitive = mesh["primitives"][object.primitive];
       object.material = primitive.contains("material") ? index_.materials.at(primitive["material"].get<std::string>())
                                                        : index_.default_material;
       for (object.instance = 0; object.instance < instance_count; ++object.instance) {
-        object.to_world =
-            rounded(instances == nullptr ? record.world : widened((*instances)[object.instance]) * record.world,
-                    scene_.camera.eye);
+        const WideTransform world = is_skinned             ? WideTransform().setTranslation(pose.place)
+                                    : instances == nullptr ? record.world
+                                                           : widened((*instances)[object.instance]) * record.world;
+        object.to_world = rounded(world, scene_.camera.eye);
         object.alive = record.visible && is_invertible(object.to_world);
         const ObjectId id = object_slot(name, object.primitive, object.instance);
         object.key = scene_.object(id).key;

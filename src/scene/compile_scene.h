@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -11,6 +12,7 @@
 
 #include "scene/compile_material.h"
 #include "scene/compile_transform.h"
+#include "scene/deformation.h"
 #include "scene/state.h"
 
 namespace relook {
@@ -104,6 +106,9 @@ class Compilation {
   bool visit_node(const std::string& name, const Json& node, NodeRecord& record);
   [[nodiscard]] const std::vector<Transform>* instances_of(const Json& node) const;
   void update_objects(const std::string& name, const Json& node, NodeRecord& record);
+  void note_skins_of(const std::string& joint);
+  void update_skinned();
+  [[nodiscard]] Pose pose_of(const Json& node) const;
   void update_light(const std::string& name, const Json& node, NodeRecord& record);
   ObjectId object_slot(const std::string& node, std::uint32_t primitive, std::uint32_t instance);
   void set_object(ObjectId id, Object value);
@@ -120,6 +125,7 @@ class Compilation {
   bool notes_history_ = true;  // of what was there before
 
   std::vector<std::string> adopted_;  // nodes with another parent than before
+  std::set<std::string> skinned_;     // nodes to compile when all joints are where they belong
   // What was there before, for the delta and for rolling back.
   std::map<TouchedEntity, std::vector<TouchedEntity>> old_references_;
   std::unordered_map<std::string, std::optional<NodeRecord>> old_nodes_;

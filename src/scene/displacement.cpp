@@ -112,6 +112,7 @@ std::size_t displaced_triangles(const Mesh& mesh, const Displacement& displaceme
 Mesh displaced(const Mesh& mesh, const Displacement& displacement) {
   require(displaced_triangles(mesh, displacement) <= kMostDisplacedTriangles, "the compiler limits subdivision");
   Mesh result = mesh;
+  result.targets.clear(), result.joints.clear(), result.joint_weights.clear();
   for (std::int32_t round = 0; round < displacement.subdivide; ++round) subdivide(result);
   const std::vector<std::uint32_t> weld = welded(result.positions);
   const bool is_smooth = !result.normals.empty();

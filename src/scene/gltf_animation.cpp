@@ -37,7 +37,7 @@ bool is_node_rotation(const JsonView& target, const std::string& pointer) {
 const GltfAccessor& accessor_of(const GltfModel& model, const JsonView& index) {
   const GltfAccessor& accessor = model.accessors[reference(index, model.accessors.size(), "accessor")];
   if (const auto fault = data_fault(model, accessor); !fault.empty()) index.fail(fault);
-  if (accessor.width == 0) index.fail("matrices are not animated");
+  if (accessor.width == 0 || accessor.width == 16) index.fail("matrices are not animated");
   return accessor;
 }
 

@@ -79,7 +79,6 @@ void check_document(const Json& gltf, std::string_view file, std::vector<std::st
   check_meshes(root);
   check_lights(root);
   check_nodes(root);
-  if (array_size(root, "skins") > 0) warnings.emplace_back("skins are ignored: meshes keep their unskinned shape");
   if (array_size(root, "animations") > 0)
     warnings.emplace_back("animations are ignored; relook journal animation makes journals of them");
 }

@@ -1,6 +1,6 @@
 // Checks of a glTF document before any parser or decoder trusts it (glTF 2.0 sections 3 and 5): every reference in
 // range, every number of the right type, finite and in its range, the nodes a forest. What only concerns parts that
-// relook does not read (animations, skins, min and max of accessors) is not checked.
+// relook does not read (animations, min and max of accessors) is not checked.
 #pragma once
 #include <string>
 #include <string_view>

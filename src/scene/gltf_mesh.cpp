@@ -6,74 +6,10 @@
 #include <utility>
 
 #include "base/error.h"
-#include "scene/gltf_accessor.h"
+#include "scene/gltf_primitive.h"
 
 namespace relook {
 namespace {
-
-constexpr float kLargestCoordinate = 1e9F;  // products of two edges and their squares stay finite
-
-/// One primitive being decoded.
-struct Source {
-  const GltfModel& model;
-  const GltfPrimitive& primitive;
-  std::string_view file;
-  std::string pointer;  // "/meshes/0/primitives/1"
-  std::vector<std::string>& warnings;
-  std::vector<std::uint32_t> vertices;  // those that triangles name, increasing: the mesh has no others
-
-  [[noreturn]] void fail(std::string_view semantic, std::string_view what) const {
-    std::string where = pointer;
-    if (semantic == "indices")
-      where += "/indices";
-    else if (!semantic.empty())
-      where += "/attributes/" + escape_token(semantic);
-    throw InputError(file, where, what);
-  }
-  void warn(std::string_view semantic, std::string_view what) const {
-    warnings.push_back(pointer + (semantic == "indices" ? "/" : "/attributes/") + std::string(semantic) + ": " +
-                       std::string(what));
-  }
-  [[nodiscard]] const GltfAccessor* accessor(std::string_view semantic) const {
-    const auto found = primitive.attributes.find(semantic);
-    return found == primitive.attributes.end() ? nullptr : &model.accessors[found->second];
-  }
-};
-
-/// Which formats a semantic may have, KHR_mesh_quantization included.
-struct Format {
-  std::size_t least_width, most_width;
-  bool integers;             // integer components at all
-  bool only_normalized;      // integers must be normalized
-  bool only_signed = false;  // normals and tangents
-};
-
-void check_format(const Source& source, std::string_view semantic, const GltfAccessor& accessor, const Format& format) {
-  const bool is_float = accessor.component == Component::f32;
-  const bool is_signed = accessor.component == Component::i8 || accessor.component == Component::i16;
-  const bool fits = accessor.width >= format.least_width && accessor.width <= format.most_width &&
-                    accessor.component != Component::u32 &&
-                    (is_float || (format.integers && (accessor.normalized || !format.only_normalized) &&
-                                  (is_signed || !format.only_signed)));
-  if (!fits) source.fail(semantic, "the accessor's type is not one that this attribute may have");
-}
-
-/// The attribute's numbers at the vertices that are used, all finite and at most `largest` in magnitude; empty without
-/// the attribute.
-std::vector<float> attribute(const Source& source, std::string_view semantic, const Format& format, float largest) {
-  const GltfAccessor* accessor = source.accessor(semantic);
-  if (accessor == nullptr) return {};
-  check_format(source, semantic, *accessor, format);
-  if (const auto fault = data_fault(source.model, *accessor); !fault.empty()) source.fail(semantic, fault);
-  std::vector<float> values = read_floats(source.model, *accessor, source.vertices);
-  const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
-  if (bad != values.end())
-    source.fail(semantic,
-                "element " +
-                    std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) / accessor->width]) +
-                    (std::isfinite(*bad) ? " is too large" : " is not finite"));
-  return values;
-}
 
 /// Unit vector, or zero when there is no direction in it. What is unit but for rounding stays as it is: so what was
 /// read and is written comes back the same.
@@ -89,7 +25,7 @@ Normal normalized(float x, float y, float z) {
 constexpr std::uint32_t kRestart = 0xFFFFFFFFU;
 
 /// The vertices that triangles are made of; kRestart where a strip or fan begins anew.
-std::vector<std::uint32_t> vertex_sequence(const Source& source, std::size_t vertices) {
+std::vector<std::uint32_t> vertex_sequence(const PrimitiveSource& source, std::size_t vertices) {
   std::vector<std::uint32_t> sequence;
   if (source.primitive.indices == kNoIndex) {
     sequence.resize(vertices);
@@ -100,8 +36,8 @@ std::vector<std::uint32_t> vertex_sequence(const Source& source, std::size_t ver
   const Component type = accessor.component;
   if (accessor.width != 1 || accessor.normalized ||
       (type != Component::u8 && type != Component::u16 && type != Component::u32))
-    source.fail("indices", "indices must be unsigned integers, one at a time");
-  if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail("indices", fault);
+    source.fail("/indices", "indices must be unsigned integers, one at a time");
+  if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail("/indices", fault);
   sequence = read_indices(source.model, accessor);
   const std::uint32_t restart = type == Component::u8 ? 0xFFU : type == Component::u16 ? 0xFFFFU : kRestart;
   bool restarts = false;
@@ -112,10 +48,10 @@ std::vector<std::uint32_t> vertex_sequence(const Source& source, std::size_t ver
       continue;
     }
     if (sequence[i] >= vertices)
-      source.fail("indices", "index " + std::to_string(i) + " is " + std::to_string(sequence[i]) + ", but there are " +
-                                 std::to_string(vertices) + " vertices");
+      source.fail("/indices", "index " + std::to_string(i) + " is " + std::to_string(sequence[i]) + ", but there are " +
+                                  std::to_string(vertices) + " vertices");
   }
-  if (restarts) source.warn("indices", "primitive restart values, which glTF does not have, begin new strips");
+  if (restarts) source.warn("/indices", "primitive restart values, which glTF does not have, begin new strips");
   return sequence;
 }
 
@@ -200,7 +136,7 @@ void replace_missing_normals(Mesh& mesh) {
   }
 }
 
-void decode_normals(const Source& source, Mesh& mesh) {
+void decode_normals(const PrimitiveSource& source, Mesh& mesh) {
   const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kLargestCoordinate);
   mesh.normals.reserve(values.size() / 3);
   for (std::size_t i = 0; i < values.size(); i += 3)
@@ -209,7 +145,7 @@ void decode_normals(const Source& source, Mesh& mesh) {
 }
 
 /// Tangents without a direction, a side or normals make the whole column useless: it is derived from uv then.
-void decode_tangents(const Source& source, Mesh& mesh) {
+void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
   if (mesh.normals.empty()) return;  // glTF 3.7.2.1
   const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kLargestCoordinate);
   mesh.tangents.reserve(values.size() / 4);
@@ -221,8 +157,9 @@ void decode_tangents(const Source& source, Mesh& mesh) {
     }
     const float handedness = values[i + 3];
     if (handedness != 1 && handedness != -1) {
-      source.warn("TANGENT", "element " + std::to_string(source.vertices[i / 4]) +
-                                 " has a w that is neither 1 nor -1; tangents follow from the texture coordinates");
+      source.warn(attribute_place("TANGENT"),
+                  "element " + std::to_string(source.vertices[i / 4]) +
+                      " has a w that is neither 1 nor -1; tangents follow from the texture coordinates");
       mesh.tangents.clear();
       return;
     }
@@ -230,7 +167,7 @@ void decode_tangents(const Source& source, Mesh& mesh) {
   }
 }
 
-void decode_colors(const Source& source, Mesh& mesh) {
+void decode_colors(const PrimitiveSource& source, Mesh& mesh) {
   const auto values = attribute(source, "COLOR_0", {3, 4, true, true}, kLargestCoordinate);
   if (values.empty()) return;
   const std::size_t width = source.accessor("COLOR_0")->width;
@@ -243,7 +180,7 @@ void decode_colors(const Source& source, Mesh& mesh) {
   }
 }
 
-Mesh decode_primitive(Source source) {
+Mesh decode_primitive(PrimitiveSource source) {
   Mesh mesh;
   const std::size_t count = source.accessor("POSITION")->count;
   mesh.triangles = triangles_of(vertex_sequence(source, count), source.primitive.mode);
@@ -262,6 +199,8 @@ Mesh decode_primitive(Source source) {
     for (std::size_t i = 0; i < values.size(); i += 2) mesh.uv[set].emplace_back(values[i], values[i + 1]);
   }
   decode_colors(source, mesh);
+  decode_targets(source, mesh);
+  decode_joints(source, mesh);
   return mesh;
 }
 
@@ -289,8 +228,9 @@ DecodedBytes decoded_bytes(const GltfModel& model, const GltfPrimitive& primitiv
   DecodedBytes bytes{bounded_product(triangles, sizeof(std::array<std::uint32_t, 3>)), 0};
   for (const auto& [semantic, size] : kColumns)
     if (primitive.attributes.contains(semantic)) bytes.kept = bounded_sum(bytes.kept, bounded_product(vertices, size));
-  bytes.passing =
-      bounded_sum(bounded_product(9 * corners, sizeof(std::uint32_t)), bounded_product(vertices, sizeof(Imath::V3d)));
+  bytes.kept = bounded_sum(bytes.kept, deforming_bytes(primitive, vertices));
+  bytes.passing = bounded_sum(bounded_product(9 * corners, sizeof(std::uint32_t)),
+                              bounded_product(vertices, passing_bytes(primitive)));
   return bytes;
 }
 

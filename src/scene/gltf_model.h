@@ -28,7 +28,7 @@ struct GltfAccessor {
   std::size_t view = kNoIndex;  // kNoIndex: zeros
   std::size_t offset = 0, count = 0;
   Component component = Component::f32;
-  std::size_t width = 1;  // components of an element; 0 for matrices, which relook does not read
+  std::size_t width = 1;  // components of an element; 16 of MAT4, 0 of other matrices, which relook does not read
   bool normalized = false;
   std::size_t sparse_count = 0;  // elements replaced
   std::size_t sparse_index_view = 0, sparse_index_offset = 0;
@@ -36,10 +36,13 @@ struct GltfAccessor {
   std::size_t sparse_value_view = 0, sparse_value_offset = 0;
 };
 
+using GltfAttributes = std::map<std::string, std::size_t, std::less<>>;  // semantic -> accessor
+
 struct GltfPrimitive {
-  std::map<std::string, std::size_t, std::less<>> attributes;  // semantic -> accessor
-  std::size_t indices = kNoIndex;                              // accessor
-  int mode = 4;                                                // 4 triangles, 5 strip, 6 fan
+  GltfAttributes attributes;
+  std::vector<GltfAttributes> targets;
+  std::size_t indices = kNoIndex;  // accessor
+  int mode = 4;                    // 4 triangles, 5 strip, 6 fan
 };
 
 struct GltfModel {
@@ -59,6 +62,15 @@ struct GltfModel {
 /// `share`: takes the bytes of every column before it is made; throws ResourceError where they are not left.
 [[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
                                                            std::vector<std::string>& warnings, ImportShare& share);
+
+/// Inverse bind matrices of every skin, one a joint: identities without an accessor. Checks skins as a whole. A skin that
+/// no node of the active scene has, has none; nor has one of which the scene lacks a joint, and the nodes of `gltf` lose
+/// it, with a warning. `share`: as above.
+/// Throws InputError, ResourceError.
+[[nodiscard]] std::vector<std::vector<Transform>> decode_skins(Json& gltf, const GltfModel& model,
+                                                               std::string_view file,
+                                                               std::vector<std::string>& warnings,
+                                                               ImportShare& share);
 
 /// EXT_mesh_gpu_instancing of every node. `share`: as above. Throws InputError, ResourceError.
 [[nodiscard]] std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model,

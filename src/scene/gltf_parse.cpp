@@ -50,7 +50,7 @@ Json geometry_document(const Json& gltf, const BufferTable& buffers) {
   if (const auto meshes = gltf.find("meshes"); meshes != gltf.end())
     for (const Json& mesh : *meshes)
       document["meshes"].push_back(
-          {{"primitives", reduced_array(mesh, "primitives", {"attributes", "indices", "mode"})}});
+          {{"primitives", reduced_array(mesh, "primitives", {"attributes", "indices", "mode", "targets"})}});
   return document;
 }
 
@@ -100,6 +100,9 @@ GltfAccessor accessor_of(const tinygltf::Accessor& parsed) {
     case TINYGLTF_TYPE_VEC4:
       accessor.width = 4;
       break;
+    case TINYGLTF_TYPE_MAT4:
+      accessor.width = 16;
+      break;
     default:
       accessor.width = 0;
   }
@@ -117,6 +120,10 @@ GltfAccessor accessor_of(const tinygltf::Accessor& parsed) {
 GltfPrimitive primitive_of(const tinygltf::Primitive& parsed) {
   GltfPrimitive primitive;
   for (const auto& [name, index] : parsed.attributes) primitive.attributes[name] = index_of(index);
+  for (const auto& target : parsed.targets) {
+    GltfAttributes& attributes = primitive.targets.emplace_back();
+    for (const auto& [name, index] : target) attributes[name] = index_of(index);
+  }
   primitive.indices = index_of(parsed.indices);
   primitive.mode = parsed.mode;
   return primitive;

@@ -8,7 +8,7 @@
 namespace relook {
 namespace {
 
-constexpr int kFloat = 5126, kUnsignedInt = 5125, kPoints = 0;
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kUnsignedShort = 5123, kPoints = 0;
 
 void append(Bytes& bytes, BytesView more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
 
@@ -63,7 +63,8 @@ class GlbWriter {
   }
 
  private:
-  /// Appends a column of tightly packed four-byte numbers. Its accessor, where type is "SCALAR", "VEC2", ...
+  /// Appends a column of tightly packed numbers, a multiple of four bytes. Its accessor, where type is "SCALAR",
+  /// "VEC2", ...
   template <class T>
   std::size_t add_column(const std::vector<T>& column, const char* type, int component, std::size_t count) {
     const BytesView bytes = std::as_bytes(std::span(column));
@@ -92,8 +93,37 @@ class GlbWriter {
     add_attribute(attributes, "TEXCOORD_0", mesh.uv[0], "VEC2");
     add_attribute(attributes, "TEXCOORD_1", mesh.uv[1], "VEC2");
     add_attribute(attributes, "COLOR_0", mesh.colors, "VEC4");
+    add_joints(attributes, mesh);
     const std::size_t indices = add_column(mesh.triangles, "SCALAR", kUnsignedInt, mesh.triangles.size() * 3);
-    return {{"attributes", std::move(attributes)}, {"indices", indices}};
+    Json primitive = {{"attributes", std::move(attributes)}, {"indices", indices}};
+    for (const MorphTarget& target : mesh.targets) primitive["targets"].push_back(targets_of(mesh, target));
+    return primitive;
+  }
+
+  /// Four influences of each vertex in one JOINTS_n and WEIGHTS_n.
+  void add_joints(Json& attributes, const Mesh& mesh) {
+    const std::size_t sets = mesh.joints.size() / mesh.positions.size() / 4;
+    for (std::size_t set = 0; set < sets; ++set) {
+      std::vector<std::uint16_t> joints;
+      std::vector<float> weights;
+      for (std::size_t i = 4 * set; i < mesh.joints.size(); i += 4 * sets) {
+        joints.insert(joints.end(), &mesh.joints[i], &mesh.joints[i] + 4);
+        weights.insert(weights.end(), &mesh.joint_weights[i], &mesh.joint_weights[i] + 4);
+      }
+      attributes["JOINTS_" + std::to_string(set)] = add_column(joints, "VEC4", kUnsignedShort, joints.size() / 4);
+      attributes["WEIGHTS_" + std::to_string(set)] = add_column(weights, "VEC4", kFloat, weights.size() / 4);
+    }
+  }
+
+  /// A column that adds nothing has no accessor; a target without any adds zeros to the positions.
+  Json targets_of(const Mesh& mesh, const MorphTarget& target) {
+    Json attributes = Json::object();
+    add_attribute(attributes, "POSITION", target.positions, "VEC3");
+    add_attribute(attributes, "NORMAL", target.normals, "VEC3");
+    add_attribute(attributes, "TANGENT", target.tangents, "VEC3");
+    if (attributes.empty())
+      add_attribute(attributes, "POSITION", std::vector<Point>(mesh.positions.size(), Point(0, 0, 0)), "VEC3");
+    return attributes;
   }
 
   std::size_t origin() { return add_positions({Point(0, 0, 0)}, Box(Point(0, 0, 0))); }

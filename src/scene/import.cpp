@@ -32,7 +32,31 @@ void make_matrices_affine(Json& gltf) {
   }
 }
 
+const Json& array_of(const Json& owner, std::string_view key) {
+  static const Json empty = Json::array();
+  const auto found = owner.find(key);
+  return found == owner.end() ? empty : *found;
+}
+
 }  // namespace
+
+std::vector<std::size_t> active_nodes(const Json& gltf) {
+  const Json& nodes = array_of(gltf, "nodes");
+  const Json& scenes = array_of(gltf, "scenes");
+  std::vector<std::size_t> active;
+  if (!scenes.empty()) {
+    for (const Json& root : array_of(scenes.at(gltf.value("scene", std::size_t{0})), "nodes")) active.push_back(root);
+  } else {
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const Json& node : nodes)
+      for (const Json& child : array_of(node, "children")) is_child.at(child) = true;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (!is_child[i]) active.push_back(i);
+  }
+  for (std::size_t next = 0; next < active.size(); ++next)
+    for (const Json& child : array_of(nodes.at(active[next]), "children")) active.push_back(child);
+  return active;
+}
 
 ImportedGltf import_gltf(const std::filesystem::path& path) {
   GltfSource source = read_gltf_source(path);
@@ -46,6 +70,7 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
   imported.meshes = decode_meshes(model, source.file, imported.warnings, share);
   imported.instances = decode_instances(source.json, model, source.file, share);
+  imported.inverse_binds = decode_skins(source.json, model, source.file, imported.warnings, share);
   imported.gltf = std::move(source.json);
   drop_data_uris(imported.gltf);
   make_matrices_affine(imported.gltf);

@@ -20,9 +20,15 @@ struct ImportedGltf {
   std::vector<EncodedImage> images;     // per glTF image; name not yet set
   /// Per glTF node: local matrices of EXT_mesh_gpu_instancing, empty without the extension.
   std::vector<std::vector<Transform>> instances;
+  /// Per glTF skin, per joint; empty for skins that the scene cannot show.
+  std::vector<std::vector<Transform>> inverse_binds;
   std::vector<std::filesystem::path> files;  // that the scene file names
-  std::vector<std::string> warnings;    // optional extensions ignored, skins left unposed, ...
+  std::vector<std::string> warnings;    // optional extensions ignored, primitives left out, ...
 };
+
+/// glTF indices of the nodes of the active scene, parents before children. Requires a checked document, whose nodes are
+/// trees.
+[[nodiscard]] std::vector<std::size_t> active_nodes(const Json& gltf);
 
 /// Reads and checks a scene file. Throws InputError{file, pointer or "byte N", ...}.
 [[nodiscard]] ImportedGltf import_gltf(const std::filesystem::path& path);

@@ -48,8 +48,11 @@ std::uint64_t geometry_bytes(const LookDocument& document) {
   for (const Mesh& mesh : document.assets->meshes) {
     add(mesh.positions), add(mesh.triangles), add(mesh.normals), add(mesh.tangents), add(mesh.colors);
     for (const auto& uv : mesh.uv) add(uv);
+    add(mesh.targets), add(mesh.joints), add(mesh.joint_weights);
+    for (const MorphTarget& target : mesh.targets) add(target.positions), add(target.normals), add(target.tangents);
   }
   for (const auto& [node, matrices] : document.instances) add(matrices);
+  for (const auto& [skin, matrices] : document.inverse_binds) add(matrices);
   return bytes;
 }
 

@@ -37,27 +37,6 @@ std::vector<std::string> names_of(const Json& items, std::string_view noun) {
   return names;
 }
 
-/// glTF indices of the nodes of the active scene, parents before children. The importer has checked that they are
-/// trees.
-std::vector<std::size_t> active_nodes(const Json& gltf) {
-  const Json& nodes = member_or_empty(gltf, "nodes");
-  const Json& scenes = member_or_empty(gltf, "scenes");
-  std::vector<std::size_t> active;
-  if (!scenes.empty()) {
-    for (const Json& root : member_or_empty(scenes.at(gltf.value("scene", std::size_t{0})), "nodes"))
-      active.push_back(root);
-  } else {
-    std::vector<bool> is_child(nodes.size(), false);
-    for (const Json& node : nodes)
-      for (const Json& child : member_or_empty(node, "children")) is_child.at(child) = true;
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      if (!is_child[i]) active.push_back(i);
-  }
-  for (std::size_t next = 0; next < active.size(); ++next)
-    for (const Json& child : member_or_empty(nodes.at(active[next]), "children")) active.push_back(child);
-  return active;
-}
-
 /// Their names in the order of the file.
 std::vector<std::string> name_cameras(const Json& gltf, const std::vector<std::size_t>& active,
                                       LookDocument& document) {
@@ -88,6 +67,41 @@ void name_camera(const std::vector<std::string>& cameras, Json& node) {
     node["camera"] = cameras[index.get<std::size_t>()];
 }
 
+/// The most targets of the primitives of a mesh.
+std::size_t target_count(const LookDocument& document, const std::string& mesh) {
+  std::size_t count = 0;
+  if (const auto found = document.assets->mesh_primitives.find(mesh); found != document.assets->mesh_primitives.end())
+    for (const MeshId id : found->second) count = std::max(count, document.assets->meshes[id.index()].targets.size());
+  return count;
+}
+
+/// As many weights as there are targets: 0 where none is given.
+void fit_weights(Json& value, std::size_t targets) {
+  if (targets == 0) {
+    value.erase("weights");
+    return;
+  }
+  Json& weights = value["weights"];
+  if (weights.is_null()) weights = Json::array();
+  if (!weights.is_array()) return;
+  Json fitted = Json::array();
+  for (std::size_t i = 0; i < targets; ++i) fitted.push_back(i < weights.size() ? weights[i] : Json(0.0));
+  weights = std::move(fitted);
+}
+
+/// The weights of a node, or else of its mesh, where edits find them (glTF 2.0 section 3.7.2.2).
+void give_weights(const LookDocument& document, Json& node) {
+  const Json& mesh = member_or_empty(node, "mesh");
+  const auto found = mesh.is_string() ? document.look["meshes"].find(mesh.get_ref<const std::string&>())
+                                      : document.look["meshes"].end();
+  if (found == document.look["meshes"].end() || !found->contains("weights")) {
+    node.erase("weights");
+    return;
+  }
+  if (!node.contains("weights")) node["weights"] = (*found)["weights"];
+  fit_weights(node, (*found)["weights"].size());
+}
+
 /// Copies one glTF item into the look document under its name.
 void add_entity(LookDocument& document, Section section, std::size_t index, Json value) {
   const std::string& name = document.order[static_cast<std::size_t>(section)][index];
@@ -97,6 +111,9 @@ void add_entity(LookDocument& document, Section section, std::size_t index, Json
   if (section == Section::images) set_relook_extra(value, "content", name);
   if (section == Section::meshes) set_relook_extra(value, "geometry", name);
   if (section == Section::nodes && document.instances.contains(name)) set_relook_extra(value, "instances", name);
+  if (section == Section::skins) set_relook_extra(value, "inverseBinds", name);
+  if (section == Section::meshes) fit_weights(value, target_count(document, name));
+  if (section == Section::nodes) give_weights(document, value);
   fill_defaults(section, value);
   document.look[std::string(section_name(section))][name] = std::move(value);
 }
@@ -120,6 +137,10 @@ void move_assets(ImportedGltf& imported, LookDocument& document) {
   const auto& node_names = document.order[static_cast<std::size_t>(Section::nodes)];
   for (std::size_t i = 0; i < imported.instances.size(); ++i)
     if (!imported.instances[i].empty()) document.instances[node_names.at(i)] = std::move(imported.instances[i]);
+  const auto& skin_names = document.order[static_cast<std::size_t>(Section::skins)];
+  for (std::size_t i = 0; i < imported.inverse_binds.size(); ++i)
+    if (!imported.inverse_binds[i].empty())
+      document.inverse_binds[skin_names.at(i)] = std::move(imported.inverse_binds[i]);
   count_geometry(document);
 }
 
@@ -186,6 +207,7 @@ LookDocument make_look_document(ImportedGltf imported) {
     if (section == Section::nodes) continue;
     const Json& items = gltf_array(gltf, section);
     for (std::size_t i = 0; i < items.size(); ++i) {
+      if (section == Section::skins && !document.inverse_binds.contains(document.order[s][i])) continue;
       Json item = items[i];
       if (section == Section::materials && item.is_object() && is_solid(item)) item.erase("doubleSided");
       add_entity(document, section, i, std::move(item));

@@ -14,8 +14,8 @@
 namespace relook {
 
 /// The arrays of glTF that the look document keys by name.
-enum class Section : std::uint8_t { materials, textures, images, samplers, meshes, lights, nodes };
-inline constexpr std::size_t kSectionCount = 7;
+enum class Section : std::uint8_t { materials, textures, images, samplers, meshes, lights, nodes, skins };
+inline constexpr std::size_t kSectionCount = 8;
 [[nodiscard]] std::string_view section_name(Section section);
 
 /// A look document with what it refers to.
@@ -23,6 +23,7 @@ struct LookDocument {
   Json look;                                                  // see README, "The look document"
   std::array<std::vector<std::string>, kSectionCount> order;  // glTF index -> name, per section (numbers as names)
   std::map<std::string, std::vector<Transform>, std::less<>> instances;  // node name -> EXT_mesh_gpu_instancing
+  std::map<std::string, std::vector<Transform>, std::less<>> inverse_binds;  // skin name -> a matrix a joint
   Json cameras;  // glTF cameras by name: {"node": name, "camera": {...}}
   std::shared_ptr<Assets> assets;
   std::string file;  // for messages

@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 
+#include "scene/deformation.h"
 #include "scene/look_schema.h"
 
 namespace relook {
@@ -64,6 +65,29 @@ void add_corners(const Box& box, const WideTransform& world, WideBox& bounds) {
   }
 }
 
+/// Of a node whose skin is whole: wrong ones are for the compiler to refuse.
+Pose pose_of(const LookDocument& document, const std::map<std::string, Place>& places, const Json& node) {
+  const Json* name = member(node, "/skin");
+  if (name == nullptr) return {};
+  const Json& skin = document.look.at("skins").at(name->get<std::string>());
+  const auto inverse_binds = document.inverse_binds.find(skin["extras"]["relook"].value("inverseBinds", ""));
+  const bool is_whole = inverse_binds != document.inverse_binds.end() && skin.contains("joints") &&
+                        skin["joints"].size() == inverse_binds->second.size();
+  if (!is_whole) return {};
+  return posed(skin, inverse_binds->second, [&](const std::string& joint) { return places.at(joint).world; });
+}
+
+/// A primitive as a node shows it, once for each of `matrices` unless a skin places it.
+void add_mesh(const Mesh& mesh, const Json* weights, const Pose& pose, const std::vector<Transform>& matrices,
+              const WideTransform& world, WideBox& bounds) {
+  const SharedDeformation deformation = deformation_of(mesh, weights, pose);
+  const bool is_skinned = deformation && !(*deformation).joints.empty();
+  if (is_skinned && mesh.joint_count() > pose.joints.size()) return;
+  const Box box = deformation ? deformed(mesh, *deformation).bounds : mesh.bounds;
+  if (is_skinned) return add_corners(box, WideTransform().setTranslation(pose.place), bounds);
+  for (const Transform& matrix : matrices) add_corners(box, widened(matrix) * world, bounds);
+}
+
 }  // namespace
 
 WideTransform unscaled_transform(const LookDocument& document, const std::string& node) {
@@ -72,19 +96,20 @@ WideTransform unscaled_transform(const LookDocument& document, const std::string
 
 WideBox world_bounds(const LookDocument& document) {
   WideBox bounds;
-  for (const auto& [name, place] : places_of(document)) {
+  const std::map<std::string, Place> places = places_of(document);
+  for (const auto& [name, place] : places) {
     const Json& node = document.look.at("nodes").at(name);
     if (!place.visible || !node.contains("mesh")) continue;
     const Json& mesh = document.look.at("meshes").at(node["mesh"].get<std::string>());
     const Json* geometry = member(mesh, "/extras/relook/geometry");
     if (geometry == nullptr || !document.assets->mesh_primitives.contains(geometry->get<std::string>())) continue;
+    const Pose pose = pose_of(document, places, node);
     const Json* instances = member(node, "/extras/relook/instances");
     const std::vector<Transform> alone(1);
     const std::vector<Transform>& matrices =
         instances == nullptr ? alone : document.instances.at(instances->get<std::string>());
     for (MeshId id : document.assets->mesh_primitives.find(geometry->get<std::string>())->second)
-      for (const Transform& matrix : matrices)
-        add_corners(document.assets->meshes[id.index()].bounds, widened(matrix) * place.world, bounds);
+      add_mesh(document.assets->meshes[id.index()], weights_of(node, mesh), pose, matrices, place.world, bounds);
   }
   return bounds;
 }

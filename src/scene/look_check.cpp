@@ -18,6 +18,19 @@ void check_mesh(const LookDocument& document, const Json& value, std::string_vie
       throw LookError(file, pointer + "/primitives", "geometry \"" + geometry + "\" has more primitives");
 }
 
+void check_skin(const LookDocument& document, const Json& value, std::string_view file, const std::string& pointer) {
+  const std::string key = value["extras"]["relook"].value("inverseBinds", "");
+  const auto inverse_binds = document.inverse_binds.find(key);
+  if (inverse_binds == document.inverse_binds.end())
+    throw LookError(file, pointer + "/extras/relook/inverseBinds",
+                    "the scene has no inverse bind matrices \"" + key + "\"");
+  const std::size_t joints = value.contains("joints") ? value["joints"].size() : 0;
+  if (joints != inverse_binds->second.size())
+    throw LookError(file, pointer + "/joints",
+                    "there are " + std::to_string(joints) + " joints for " +
+                        std::to_string(inverse_binds->second.size()) + " inverse bind matrices");
+}
+
 void check_node(const LookDocument& document, const Json& value, std::string_view file, const std::string& pointer) {
   const Json* key = member_at(value, {"extras", "relook", "instances"});
   if (key != nullptr && !document.instances.contains(key->get_ref<const std::string&>()))
@@ -81,6 +94,7 @@ void check_entity(const LookDocument& document, const TouchedEntity& entity, con
   if (*section == Section::images || *section == Section::samplers)
     check_texture_entity(document, file, *section, value, pointer);
   if (*section == Section::meshes) check_mesh(document, value, file, pointer);
+  if (*section == Section::skins) check_skin(document, value, file, pointer);
   if (*section == Section::nodes) check_node(document, value, file, pointer);
 }
 

@@ -6,7 +6,7 @@ namespace relook {
 
 std::string_view section_name(Section section) {
   constexpr std::array<std::string_view, kSectionCount> kNames{"materials", "textures", "images", "samplers",
-                                                               "meshes",    "lights",   "nodes"};
+                                                               "meshes",    "lights",   "nodes",  "skins"};
   return kNames[static_cast<std::size_t>(section)];
 }
 

@@ -24,6 +24,10 @@ Field reals(std::string_view key, Json fallback, double low, double high) {
   return {
       .key = key, .kind = FieldKind::reals, .fallback = std::move(fallback), .low = low, .high = high, .count = count};
 }
+/// Any number of them.
+Field numbers(std::string_view key, double low, double high) {
+  return {.key = key, .kind = FieldKind::reals, .fallback = {}, .low = low, .high = high};
+}
 Field choice(std::string_view key, Json fallback, std::vector<std::string_view> choices, bool required = false) {
   return {.key = key,
           .kind = FieldKind::choice,
@@ -175,7 +179,8 @@ const Schema& mesh_schema() {
       {name("material", Target::materials), integer("mode", 4, 0, 6), optional("extensions", extensions)}};
   static const Schema relook{{text("geometry")}};
   static const Schema extras = wrapped("relook", relook);
-  static const Schema mesh{{text("name"), list("primitives", primitive), implied("extras", extras)}};
+  static const Schema mesh{
+      {text("name"), list("primitives", primitive), numbers("weights", -kMost, kMost), implied("extras", extras)}};
   return mesh;
 }
 
@@ -201,16 +206,23 @@ const Schema& node_schema() {
   static const Schema node = [] {
     Field children = names("children", Target::nodes);
     children.fallback = Json::array();
-    Schema schema{{text("name"), name("mesh", Target::meshes), children, name("camera", Target::cameras),
-                   implied("extensions", extensions), optional("extras", extras),
-                   reals("translation", {0.0, 0.0, 0.0}, -kMost, kMost),
-                   reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kMost, kMost),
-                   reals("scale", {1.0, 1.0, 1.0}, -kMost, kMost)}};
+    Schema schema{
+        {text("name"), name("mesh", Target::meshes), name("skin", Target::skins), numbers("weights", -kMost, kMost),
+         children, name("camera", Target::cameras), implied("extensions", extensions), optional("extras", extras),
+         reals("translation", {0.0, 0.0, 0.0}, -kMost, kMost), reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kMost, kMost),
+         reals("scale", {1.0, 1.0, 1.0}, -kMost, kMost)}};
     schema.fields.push_back(
         {.key = "matrix", .kind = FieldKind::reals, .fallback = {}, .low = -kMost, .high = kMost, .count = 16});
     return schema;
   }();
   return node;
+}
+
+const Schema& skin_schema() {
+  static const Schema relook{{text("inverseBinds")}};
+  static const Schema extras = wrapped("relook", relook);
+  static const Schema skin{{text("name"), names("joints", Target::nodes), implied("extras", extras)}};
+  return skin;
 }
 
 }  // namespace
@@ -229,6 +241,8 @@ const Schema& schema_of(Section section) {
       return mesh_schema();
     case Section::lights:
       return light_schema();
+    case Section::skins:
+      return skin_schema();
     case Section::nodes:
       break;
   }

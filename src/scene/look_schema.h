@@ -18,7 +18,18 @@ namespace relook {
 enum class FieldKind : std::uint8_t { number, integer, boolean, text, texts, reals, choice, name, names, object, list };
 
 /// What a name refers to; the first are those of Section, in its order.
-enum class Target : std::uint8_t { materials, textures, images, samplers, meshes, lights, nodes, cameras, variants };
+enum class Target : std::uint8_t {
+  materials,
+  textures,
+  images,
+  samplers,
+  meshes,
+  lights,
+  nodes,
+  skins,
+  cameras,
+  variants
+};
 [[nodiscard]] std::string_view target_noun(Target target);  // "material"
 
 struct Schema;
@@ -27,7 +38,7 @@ struct Field {
   FieldKind kind = FieldKind::number;
   Json fallback = {};                          // null: absent until set
   double low = 0, high = 0;                    // number, integer, reals
-  std::size_t count = 0;                       // reals
+  std::size_t count = 0;                       // reals; 0: any number of them
   const Schema* inner = nullptr;               // object, list
   Target target = Target::materials;           // name, names
   std::vector<std::string_view> choices = {};  // choice

@@ -9,8 +9,8 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 9> kNouns{"material", "texture", "image",  "sampler", "mesh",
-                                                 "light",    "node",    "camera", "variant"};
+constexpr std::array<std::string_view, 10> kNouns{"material", "texture", "image", "sampler", "mesh",
+                                                  "light",    "node",    "skin",  "camera",  "variant"};
 
 const Field* find_field(const Schema& schema, std::string_view key) {
   for (const Field& field : schema.fields)
@@ -165,7 +165,9 @@ class Checker {
   }
 
   void reals(const Field& field, const Json& value, const Place& place) const {
-    if (!value.is_array() || value.size() != field.count)
+    if (field.count == 0 && !value.is_array())
+      fail(place, "expected an array of numbers, got " + std::string(type_noun(value)));
+    if (field.count != 0 && (!value.is_array() || value.size() != field.count))
       fail(place, "expected an array of " + std::to_string(field.count) + " numbers, got " +
                       (value.is_array() ? std::to_string(value.size()) : std::string(type_noun(value))));
     for (std::size_t i = 0; i < value.size(); ++i) number(field, value[i], {&place, {}, i});

@@ -1,6 +1,7 @@
 // Geometry of one glTF primitive as triangles in object space, and the encoded images that came with it. Immutable after
 // import; look documents name these by mesh and image name.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -15,6 +16,15 @@
 
 namespace relook {
 
+/// What one morph target adds to each vertex at a weight of 1 (glTF 2.0 section 3.7.2.2). Each column is empty, where it
+/// adds nothing, or as long as the mesh's positions.
+struct MorphTarget {
+  std::vector<Point> positions;
+  std::vector<Normal> normals;
+  std::vector<Direction> tangents;
+  bool operator==(const MorphTarget&) const = default;
+};
+
 /// One glTF mesh primitive. Invariants: every index < positions.size(); optional columns are empty or as long as
 /// positions; everything is finite.
 struct Mesh {
@@ -28,7 +38,19 @@ struct Mesh {
   std::vector<Rgba> colors;                             // COLOR_0, linear; a = coverage
   float min_alpha = 1;                                  // smallest colors[].a, 1 without colours
   Box bounds;                                           // object space
+  std::vector<MorphTarget> targets;                     // by index of a weight
+  std::vector<std::uint16_t> joints;                    // [positions][influences], 0 where the weight is; or empty
+  std::vector<float> joint_weights;                     // the same; not negative, the sum of a vertex is 1
+
+  /// The least number of joints that a skin of this mesh has; 0 for a mesh that is not skinned.
+  [[nodiscard]] std::size_t joint_count() const;
 };
+
+inline std::size_t Mesh::joint_count() const {
+  std::size_t count = 0;
+  for (const std::uint16_t joint : joints) count = std::max(count, std::size_t{joint} + 1);
+  return count;
+}
 
 /// An image as it was in the file: decoded only when a pyramid of it is needed.
 struct EncodedImage {

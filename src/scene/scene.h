@@ -18,21 +18,39 @@ namespace relook {
 /// scale * (red - midlevel), after `subdivide` rounds of 1-to-4 subdivision.
 struct Displacement {
   TextureSlot texture;
-  float scale = 0;  // object-space units
+  float scale = 0;         // object-space units
   float midlevel = 0.5F;
   std::int32_t subdivide = 0;  // 0..6
   bool operator==(const Displacement&) const = default;
 };
 
+/// What morph weights and joints make of a mesh (deformation.h).
+struct Deformation {
+  std::vector<float> weights;     // of the mesh's targets, in their order; empty: none adds anything
+  std::vector<Transform> joints;  // inverse bind matrix, then the joint's place from the object's; empty: no skin
+  bool operator==(const Deformation&) const = default;
+};
+
+/// A deformation shared by the copies of an object, compared by value; none: the mesh stays as it is.
+struct SharedDeformation {
+  std::shared_ptr<const Deformation> value;
+  explicit operator bool() const { return value != nullptr; }
+  const Deformation& operator*() const { return *value; }
+  bool operator==(const SharedDeformation& other) const {
+    return value == other.value || (value && other.value && *value == *other.value);
+  }
+};
+
 /// One glTF primitive placed by one node (or one instance of it): what a ray path names.
 struct Object {
-  std::string node;  // look-document name of the node
+  std::string node;            // look-document name of the node
   std::uint32_t primitive = 0, instance = 0;
-  std::uint64_t key = 0;  // hash of (node, primitive, instance): orders coincident hits, the same in every run
-  bool alive = true;      // false: deleted or hidden
-  MeshId mesh;            // undisplaced geometry
+  std::uint64_t key = 0;       // hash of (node, primitive, instance): orders coincident hits, the same in every run
+  bool alive = true;           // false: deleted or hidden
+  MeshId mesh;                 // geometry as imported
   MaterialId material;
-  Transform to_world;  // affine, row vectors; from the camera's eye
+  Transform to_world;          // affine, row vectors; from the camera's eye
+  SharedDeformation deformation;            // before displacement
   std::optional<Displacement> displacement;
   bool operator==(const Object&) const = default;
 };
@@ -41,14 +59,14 @@ enum class LightKind : std::uint8_t { point, spot, directional };
 
 /// One placed light (KHR_lights_punctual).
 struct Light {
-  std::string node;   // node that places it
-  std::string light;  // /lights/<name>
-  bool alive = true;  // false: deleted or hidden
+  std::string node;            // node that places it
+  std::string light;           // /lights/<name>
+  bool alive = true;           // false: deleted or hidden
   LightKind kind = LightKind::point;
-  Point position{0, 0, 0};        // point, spot: from the camera's eye
+  Point position{0, 0, 0};     // point, spot: from the camera's eye
   Direction direction{0, 0, -1};  // spot, directional: unit, the way the light travels
   Color color{1, 1, 1};
-  float intensity = 1;  // candela, or lux for directional
+  float intensity = 1;         // candela, or lux for directional
   float range = std::numeric_limits<float>::infinity();
   float inner_cone = 0, outer_cone = 0.785398F;  // radians
   bool operator==(const Light&) const = default;
@@ -56,9 +74,9 @@ struct Light {
 
 /// What rays that miss everything see (extras.relook of the scene).
 struct Environment {
-  Color color{0, 0, 0};  // multiplies the image, if there is one
+  Color color{0, 0, 0};        // multiplies the image, if there is one
   float intensity = 1;
-  float rotation = 0;                           // radians about +y
+  float rotation = 0;          // radians about +y
   std::shared_ptr<const TexturePyramid> image;  // lat-long, +y up, -z in the middle
   bool operator==(const Environment&) const = default;
 };
@@ -66,10 +84,10 @@ struct Environment {
 struct Scene {
   std::shared_ptr<const Assets> assets;
   Camera camera;
-  std::vector<Material> materials;   // indexed by MaterialId; the last of compile() is the default material
-  std::vector<Object> objects;       // indexed by ObjectId
-  std::vector<Light> lights;         // indexed by LightId
-  std::vector<LightId> light_order;  // living lights by node name: the order of every sum over lights
+  std::vector<Material> materials;  // indexed by MaterialId; the last of compile() is the default material
+  std::vector<Object> objects;      // indexed by ObjectId
+  std::vector<Light> lights;        // indexed by LightId
+  std::vector<LightId> light_order; // living lights by node name: the order of every sum over lights
   Color ambient{0, 0, 0};
   Environment environment;
 
@@ -79,21 +97,12 @@ struct Scene {
   [[nodiscard]] const Mesh& mesh(MeshId id) const { return assets->meshes[id.index()]; }
 };
 
-/// What one edit changed, with the values before it; the scene has those after it. Entities whose compiled value did
-/// not change do not appear. An object or light that did not live before has before.alive == false.
+/// What one edit changed, with the values before it; the scene has those after it. Entities whose compiled value did not
+/// change do not appear. An object or light that did not live before has before.alive == false.
 struct SceneDelta {
-  struct MaterialChange {
-    MaterialId id;
-    Material before;
-  };
-  struct ObjectChange {
-    ObjectId id;
-    Object before;
-  };
-  struct LightChange {
-    LightId id;
-    Light before;
-  };
+  struct MaterialChange { MaterialId id; Material before; };
+  struct ObjectChange { ObjectId id; Object before; };
+  struct LightChange { LightId id; Light before; };
   std::vector<MaterialChange> materials;
   std::vector<ObjectChange> objects;
   std::vector<LightChange> lights;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "scene/deformation.h"
 #include "scene/displacement.h"
 
 namespace relook {
@@ -55,6 +56,13 @@ float offset_of(const Transform& m, const Box& bounds) {
     largest = std::max(largest, sum);
   }
   return largest * kUlps;
+}
+
+/// Requires a deformation or a displacement.
+Mesh shaped(const Mesh& mesh, const Object& object) {
+  if (!object.deformation) return displaced(mesh, *object.displacement);
+  Mesh result = deformed(mesh, *object.deformation);
+  return object.displacement ? displaced(result, *object.displacement) : result;
 }
 
 }  // namespace
@@ -145,13 +153,14 @@ std::shared_ptr<const CornerTangents> RayScene::tangents_of(const std::shared_pt
 
 std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object) const {
   const Mesh& mesh = scene.mesh(object.mesh);
-  if (!object.displacement || !object.alive) return {scene.assets, &mesh};
-  std::erase_if(displaced_, [](const Displaced& known) { return known.result.expired(); });
-  for (const Displaced& known : displaced_)
-    if (known.mesh == object.mesh && known.displacement == *object.displacement)
+  if ((!object.deformation && !object.displacement) || !object.alive) return {scene.assets, &mesh};
+  std::erase_if(shaped_, [](const Shaped& known) { return known.result.expired(); });
+  for (const Shaped& known : shaped_)
+    if (known.mesh == object.mesh && known.deformation == object.deformation &&
+        known.displacement == object.displacement)
       if (auto result = known.result.lock()) return result;
-  auto result = std::make_shared<const Mesh>(displaced(mesh, *object.displacement));
-  displaced_.push_back({object.mesh, *object.displacement, result});
+  auto result = std::make_shared<const Mesh>(shaped(mesh, object));
+  shaped_.push_back({object.mesh, object.deformation, object.displacement, result});
   return result;
 }
 

@@ -13,7 +13,7 @@ namespace relook {
 
 /// One object, ready for rays.
 struct RayObject {
-  std::shared_ptr<const Mesh> mesh;                               // displaced, if the object is
+  std::shared_ptr<const Mesh> mesh;          // deformed and displaced, if the object is
   std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: where a normal map needs derived ones
   std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
   Transform to_world;
@@ -52,9 +52,10 @@ class RayScene {
                                                                   std::uint8_t texcoord) const;
 
   const Scene* scene_ = nullptr;
-  struct Displaced {
+  struct Shaped {
     MeshId mesh;
-    Displacement displacement;
+    SharedDeformation deformation;
+    std::optional<Displacement> displacement;
     std::weak_ptr<const Mesh> result;
   };
 
@@ -64,8 +65,8 @@ class RayScene {
     std::weak_ptr<const CornerTangents> result;
   };
 
-  mutable std::vector<Derived> derived_;                    // as displaced_
-  mutable std::vector<Displaced> displaced_;                // made once, while an object uses them
+  mutable std::vector<Derived> derived_;  // as shaped_
+  mutable std::vector<Shaped> shaped_;                      // made once, while an object uses them
   std::vector<std::unique_ptr<RayObject>> objects_;         // by ObjectId; none moves or goes: top levels point to them
   std::vector<std::vector<ObjectId>> users_;                // by MaterialId
   std::vector<MaterialId> listed_;                          // by ObjectId: among whose users it is

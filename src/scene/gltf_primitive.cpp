@@ -1,0 +1,60 @@
+#include "scene/gltf_primitive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace relook {
+namespace {
+
+void check_format(const PrimitiveSource& source, const GltfAccessor& accessor, const std::string& place,
+                  const ColumnFormat& format) {
+  const bool is_float = accessor.component == Component::f32;
+  const bool is_signed = accessor.component == Component::i8 || accessor.component == Component::i16;
+  const bool fits = accessor.width >= format.least_width && accessor.width <= format.most_width &&
+                    accessor.component != Component::u32 &&
+                    (is_float || (format.integers && (accessor.normalized || !format.only_normalized) &&
+                                  (is_signed || !format.only_signed)));
+  if (!fits) source.fail(place, "the accessor's type is not one that this attribute may have");
+}
+
+}  // namespace
+
+void PrimitiveSource::fail(const std::string& place, std::string_view what) const {
+  throw InputError(file, pointer + place, what);
+}
+
+void PrimitiveSource::warn(const std::string& place, std::string_view what) const {
+  warnings.push_back(pointer + place + ": " + std::string(what));
+}
+
+const GltfAccessor* PrimitiveSource::accessor(std::string_view semantic) const {
+  const auto found = primitive.attributes.find(semantic);
+  return found == primitive.attributes.end() ? nullptr : &model.accessors[found->second];
+}
+
+std::string attribute_place(std::string_view semantic) { return "/attributes/" + escape_token(semantic); }
+
+std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& accessor, const std::string& place,
+                             const ColumnFormat& format, float largest) {
+  check_format(source, accessor, place, format);
+  if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail(place, fault);
+  std::vector<float> values = read_floats(source.model, accessor, source.vertices);
+  const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
+  if (bad != values.end())
+    source.fail(place,
+                "element " +
+                    std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) / accessor.width]) +
+                    (std::isfinite(*bad) ? " is too large" : " is not finite"));
+  return values;
+}
+
+std::vector<float> attribute(const PrimitiveSource& source, std::string_view semantic, const ColumnFormat& format,
+                             float largest) {
+  const GltfAccessor* accessor = source.accessor(semantic);
+  if (accessor == nullptr) return {};
+  return column_of(source, *accessor, attribute_place(semantic), format, largest);
+}
+
+}  // namespace relook
