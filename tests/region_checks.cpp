@@ -56,7 +56,8 @@ class TreeCheck {
     if (is_folded(history)) origins.extendBy(own->points);
     const bool missed = node.object.is_none();
     for (const float t : {0.0F, 0.3F, 0.7F, 1.0F}) {
-      const float length = (missed ? 50.0F : node.length) * t;
+      const float start = node.ray.travelled;  // of a ray that goes straight on
+      const float length = start + (missed ? 50.0F : node.length - start) * t;
       const Box to = missed ? extruded(origins, own->leaving, 50).to : own->points;
       if (!is_inside(origins, to, node.ray.origin + node.ray.direction * length)) return false;
     }
