@@ -2,9 +2,30 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+
 #include "scene/image_library.h"
 
 namespace {
+
+/// OpenImageIO 2.4's own reader takes a place beyond the end, which a file can ask for, for one before it.
+class Memory final : public OIIO::Filesystem::IOMemReader {
+ public:
+  using IOMemReader::IOMemReader;
+  std::size_t read(void* out, std::size_t count) override {
+    const std::size_t done = pread(out, count, m_pos);
+    m_pos += static_cast<std::int64_t>(done);
+    return done;
+  }
+  std::size_t pread(void* out, std::size_t count, std::int64_t offset) override {
+    if (offset < 0 || static_cast<std::uint64_t>(offset) >= size()) return 0;
+    const std::size_t here = std::min(count, size() - static_cast<std::size_t>(offset));
+    std::memcpy(out, buffer().data() + offset, here);
+    return here;
+  }
+};
 
 class OiioImage final : public relook::ImageReader {
  public:
@@ -54,7 +75,7 @@ class OiioImage final : public relook::ImageReader {
   [[nodiscard]] std::string error() const override { return input_->geterror(); }
 
  private:
-  OIIO::Filesystem::IOMemReader memory_;
+  Memory memory_;
   std::unique_ptr<OIIO::ImageInput> input_;
   OIIO::ImageSpec spec_;
 };
