@@ -270,8 +270,8 @@ void RunPlan::count_kept() {
 bool RunPlan::has_true_head(const Json& head) const {
   try {
     const JsonView view(head, kReportName), resolution = view.at("resolution");
-    const std::string pixels =
-        std::to_string(resolution.at(0).integer(1, INT32_MAX)) + "x" + std::to_string(resolution.at(1).integer(1, INT32_MAX));
+    const std::string pixels = std::to_string(resolution.at(0).integer(1, INT32_MAX)) + "x" +
+                               std::to_string(resolution.at(1).integer(1, INT32_MAX));
     return pixels == source_.at("resolution") && view.at("samples").value().dump() == source_.at("samples") &&
            view.at("scene").at("hash").value() == source_.at("scene") &&
            view.at("options").at("max_depth").value().dump() == source_.at("max_depth");

@@ -1,14 +1,7 @@
 #include "base/sandbox.h"
 
+#include "base/sanitizers.h"
 #include "base/system_calls.h"
-
-#ifndef __has_feature
-#define __has_feature(name) 0
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || __has_feature(address_sanitizer) || \
-    __has_feature(thread_sanitizer)
-#undef RELOOK_HAS_SANDBOX
-#endif
 
 #ifdef RELOOK_HAS_SANDBOX
 #include <fcntl.h>
@@ -98,12 +91,14 @@ bool has_seccomp() {
 }  // namespace
 
 void enter_sandbox(const Reach& reach) {
+  if (kIsInstrumented) return;  // sanitizers start programs and trace themselves
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return;
   keep_to_files(reach);
   give_up_calls();
 }
 
 std::string sandbox_text() {
+  if (kIsInstrumented) return "none (a build with sanitizers)";
   std::string text = "no_new_privs";
   if (has_seccomp()) text += ", seccomp";
   if (const long abi = landlock_abi(); abi > 0) text += ", landlock " + std::to_string(abi);
@@ -118,7 +113,7 @@ namespace relook {
 
 void enter_sandbox(const Reach&) {}
 
-std::string sandbox_text() { return "none (a build with sanitizers, or not of Linux on x86-64 or aarch64)"; }
+std::string sandbox_text() { return "none (not built for Linux on x86-64 or aarch64)"; }
 
 }  // namespace relook
 #endif

@@ -6,6 +6,7 @@
 
 #include "scene/deformation.h"
 #include "scene/displacement.h"
+#include "trace/rounding.h"
 
 namespace relook {
 namespace {
@@ -44,18 +45,11 @@ std::uint64_t tie_key(const Object& object, const Box& bounds) {
   return rank << (64 - kSizeBits) | object.key >> kSizeBits;
 }
 
-/// Rounding errors of a hit follow the largest numbers added up on the way from object space to the world, anywhere on
-/// the object: near the origin of a large triangle they are as large as at its corners.
-float offset_of(const Transform& m, const Box& bounds) {
-  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place
-  float largest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    float sum = std::fabs(m[3][axis]);
-    for (int i = 0; i < 3; ++i)
-      sum += std::max(std::fabs(bounds.min[i]), std::fabs(bounds.max[i])) * std::fabs(m[i][axis]);
-    largest = std::max(largest, sum);
-  }
-  return largest * kUlps;
+/// The largest coordinates in a box by magnitude.
+Point largest_in(const Box& bounds) {
+  Point largest(0, 0, 0);
+  for (int i = 0; i < 3; ++i) largest[i] = std::max(std::fabs(bounds.min[i]), std::fabs(bounds.max[i]));
+  return largest;
 }
 
 /// Requires a deformation or a displacement.
@@ -117,7 +111,7 @@ RayObject RayScene::make_object(const Scene& scene, const Object& object, const 
   ray_object.to_world = object.to_world;
   ray_object.normal_to_world = normal_matrix(object.to_world);
   const float det = determinant(object.to_world, ray_object.normal_to_world);
-  ray_object.offset = offset_of(object.to_world, ray_object.mesh->bounds);
+  ray_object.offset = rounding_offset(object.to_world, largest_in(ray_object.mesh->bounds));
   ray_object.flipped = det < 0;
   ray_object.condition = condition_number(object.to_world, ray_object.normal_to_world, det);
   ray_object.alive = object.alive;

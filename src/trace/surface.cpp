@@ -6,6 +6,7 @@
 #include "base/portable_math.h"
 #include "scene/procedural.h"
 #include "scene/texture_mapping.h"
+#include "trace/rounding.h"
 
 namespace relook {
 namespace {
@@ -54,6 +55,9 @@ inline Normal unit_normal(const Normal& n, const Imath::M33f& to_world, const No
 }
 
 float largest_of(float a, float b, float c) { return std::max(std::max(std::fabs(a), std::fabs(b)), std::fabs(c)); }
+Point largest_of(const Point& a, const Point& b, const Point& c) {
+  return Point(largest_of(a.x, b.x, c.x), largest_of(a.y, b.y, c.y), largest_of(a.z, b.z, c.z));
+}
 
 /// From a point of a triangle towards the planes through its vertices across their normals, weighted as the vertices
 /// are: onto the surface that they stand for, where that lies above the triangle (Hanika 2021, "Hacking the Shadow
@@ -69,18 +73,6 @@ Direction smooth_lift(const Mesh& mesh, const Hit& hit, const Point& local, bool
   return part(triangle[0], w0) + part(triangle[1], w1) + part(triangle[2], w2);
 }
 
-/// Rounding errors of a hit follow the largest numbers added up on the way from object space to the world, anywhere on
-/// its triangle: near the origin they are as large as at its corners.
-float offset_of(const Transform& m, const Point& a, const Point& b, const Point& c) {
-  constexpr float kUlps = 0x1p-19F;  // 32 units in the last place
-  const Point reach(largest_of(a.x, b.x, c.x), largest_of(a.y, b.y, c.y), largest_of(a.z, b.z, c.z));
-  float largest = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    largest = std::max(largest, std::fabs(m[3][axis]) + reach.x * std::fabs(m[0][axis]) +
-                                    reach.y * std::fabs(m[1][axis]) + reach.z * std::fabs(m[2][axis]));
-  return largest * kUlps;
-}
-
 }  // namespace
 
 SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction direction) {
@@ -90,7 +82,7 @@ SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction di
   point.local = interpolate(mesh.positions, triangle, hit);
   point.position = to_world(object.to_world, point.local);
   const Point &a = mesh.positions[triangle[0]], &b = mesh.positions[triangle[1]], &c = mesh.positions[triangle[2]];
-  point.offset = offset_of(object.to_world, a, b, c);
+  point.offset = rounding_offset(object.to_world, largest_of(a, b, c));
   const Normal cross = (b - a).cross(c - a);
   Normal front = unit_normal(cross, object.normal_to_world, Normal(0, 0, 1));
   if (object.flipped) front = -front;

@@ -72,15 +72,16 @@ class Updater {
     if (!tests_.tests_ray(touched, segment)) return false;
     Meeting meeting = Tracer::intersect(change_.moved_after, segment);
     if (meeting.object.is_none()) return false;
+    const Ray whole = grower_.whole_ray(ray, counters_);
     if (ray.goes_on()) {  // behind what it comes from?
-      segment.behind = grower_.whole_ray(ray, counters_).behind;
+      segment.behind = whole.behind;
       segment.t_min = ray.start;
       meeting = Tracer::intersect(change_.moved_after, segment);
       if (meeting.object.is_none()) return false;
     }
     if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
       ++counters_.ray_updates;
-      const Meeting nearest = Tracer::intersect(*grower_.grow().level, grower_.whole_ray(ray, counters_));
+      const Meeting nearest = Tracer::intersect(*grower_.grow().level, whole);
       if (nearest.object == node.object() && nearest.hit == block.nodes[index].hit) return false;
       if (!nearest.object.is_none()) return regrow(index, node, nearest);
     }
