@@ -65,6 +65,7 @@ RayScene::RayScene(const Scene& scene) { update(scene, {}); }
 
 void RayScene::update(const Scene& scene, const SceneDelta& delta) {
   scene_ = &scene;
+  std::erase_if(derived_, [](const auto& known) { return known.second.result.expired(); });
   const auto remake = [&](std::size_t i) {
     const Object& object = scene.objects[i];
     *objects_[i] = make_object(scene, object, scene.material(object.material));
@@ -136,25 +137,24 @@ void RayScene::set_material(RayObject& object, std::shared_ptr<const Material> m
 
 std::shared_ptr<const CornerTangents> RayScene::tangents_of(const std::shared_ptr<const Mesh>& mesh,
                                                             std::uint8_t texcoord) const {
-  std::erase_if(derived_, [](const Derived& known) { return known.result.expired() || known.mesh.expired(); });
-  for (const Derived& known : derived_)
-    if (known.texcoord == texcoord && known.mesh.lock().get() == mesh.get())
-      if (auto result = known.result.lock()) return result;
+  const std::pair key(mesh.get(), texcoord);
+  if (const auto known = derived_.find(key); known != derived_.end() && known->second.mesh.lock() == mesh)
+    if (auto result = known->second.result.lock()) return result;
   auto result = std::make_shared<const CornerTangents>(derive_tangents(*mesh, texcoord));
-  derived_.push_back({mesh, texcoord, result});
+  derived_.insert_or_assign(key, Derived{mesh, result});
   return result;
 }
 
 std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object) const {
   const Mesh& mesh = scene.mesh(object.mesh);
   if ((!object.deformation && !object.displacement) || !object.alive) return {scene.assets, &mesh};
-  std::erase_if(shaped_, [](const Shaped& known) { return known.result.expired(); });
-  for (const Shaped& known : shaped_)
-    if (known.mesh == object.mesh && known.deformation == object.deformation &&
-        known.displacement == object.displacement)
+  std::vector<Shaped>& of_mesh = shaped_[object.mesh];
+  std::erase_if(of_mesh, [](const Shaped& known) { return known.result.expired(); });
+  for (const Shaped& known : of_mesh)
+    if (known.deformation == object.deformation && known.displacement == object.displacement)
       if (auto result = known.result.lock()) return result;
   auto result = std::make_shared<const Mesh>(shaped(mesh, object));
-  shaped_.push_back({object.mesh, object.deformation, object.displacement, result});
+  of_mesh.push_back({object.deformation, object.displacement, result});
   return result;
 }
 

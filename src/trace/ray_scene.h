@@ -2,7 +2,9 @@
 // change of the scene rebuilds only the entries it names. Colour parameters are read from Scene, not from here.
 #pragma once
 #include <array>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "scene/scene.h"
@@ -13,7 +15,7 @@ namespace relook {
 
 /// One object, ready for rays.
 struct RayObject {
-  std::shared_ptr<const Mesh> mesh;          // deformed and displaced, if the object is
+  std::shared_ptr<const Mesh> mesh;                               // deformed and displaced, if the object is
   std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: where a normal map needs derived ones
   std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
   Transform to_world;
@@ -53,20 +55,19 @@ class RayScene {
 
   const Scene* scene_ = nullptr;
   struct Shaped {
-    MeshId mesh;
     SharedDeformation deformation;
     std::optional<Displacement> displacement;
     std::weak_ptr<const Mesh> result;
   };
 
   struct Derived {
-    std::weak_ptr<const Mesh> mesh;
-    std::uint8_t texcoord;
+    std::weak_ptr<const Mesh> mesh;  // expired: the address may belong to another mesh by now
     std::weak_ptr<const CornerTangents> result;
   };
 
-  mutable std::vector<Derived> derived_;  // as shaped_
-  mutable std::vector<Shaped> shaped_;                      // made once, while an object uses them
+  // Made once, while an object uses them.
+  mutable std::map<MeshId, std::vector<Shaped>> shaped_;
+  mutable std::map<std::pair<const Mesh*, std::uint8_t>, Derived> derived_;  // by mesh and uv set
   std::vector<std::unique_ptr<RayObject>> objects_;         // by ObjectId; none moves or goes: top levels point to them
   std::vector<std::vector<ObjectId>> users_;                // by MaterialId
   std::vector<MaterialId> listed_;                          // by ObjectId: among whose users it is
