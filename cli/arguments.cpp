@@ -55,6 +55,17 @@ void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--trace", arguments.trace, "File to write: what took how long, for Perfetto (Chrome trace events)");
 }
 
+/// Of verbs that read scenes or journals.
+void add_import_rules(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--root", arguments.import.roots,
+                  "Folder whose files scenes and journals may name, like a library of textures; may be repeated")
+      ->check(CLI::ExistingDirectory)
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  verb.add_flag("--strict-gltf", arguments.import.is_strict,
+                "Refuse what is against the glTF specification, also where it has one plain meaning or nothing uses it");
+}
+
 CLI::Option* add_look_patch(CLI::App& verb, Arguments& arguments,
                             const char* help = "JSON Patch (RFC 6902) applied to the look document first") {
   return verb.add_option("--look", arguments.view.look_patch, help);
@@ -156,6 +167,7 @@ void add_journal(CLI::App& app, Arguments& arguments, RawTexts& raw) {
     source->add_option("--camera", arguments.view.camera, "Camera that the journal is for, which it cannot move");
     add_look_patch(*source, arguments);
     add_lights(*source, raw);
+    add_import_rules(*source, arguments);
     add_common(*source, arguments, raw);
   }
 }
@@ -245,6 +257,7 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->required()
       ->expected(1)
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  for (CLI::App* verb : {&render, &preprocess, &replay, &inspect, &plan, &blame}) add_import_rules(*verb, arguments);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 }
 
@@ -268,6 +281,7 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
     std::tie(arguments.view.width, arguments.view.height) = parse_resolution("--resolution", raw.resolution);
   if (!raw.memory.empty()) arguments.structures.memory_bytes = parse_size("--memory", raw.memory);
   if (!raw.import_memory.empty()) set_import_memory(parse_size("--import-memory", raw.import_memory));
+  set_import_rules(arguments.import);
   if (!raw.disk.empty()) arguments.structures.disk_bytes = parse_size("--disk", raw.disk);
   if (!raw.ray_trees.empty())
     arguments.structures.ray_trees_percent = parse_percent("--ray-trees", raw.ray_trees, true);

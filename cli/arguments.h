@@ -10,6 +10,7 @@
 #include "engine/frame_comparison.h"
 #include "engine/image.h"
 #include "engine/report.h"
+#include "scene/import_rules.h"
 
 namespace relook {
 
@@ -56,6 +57,7 @@ struct Arguments {
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
   std::size_t threads = 0;                   // 0: all
   bool quiet = false, json = false;
+  ImportRules import;
   bool overlays = false;  // images of the regions found
   ProgressStyle progress = ProgressStyle::automatic;
   bool log_json = false;

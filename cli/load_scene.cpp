@@ -1,6 +1,7 @@
 #include "load_scene.h"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "edit/journal.h"
 #include "report/edit_hashes.h"
 #include "scene/import.h"
+#include "scene/look_warnings.h"
 
 namespace relook {
 namespace {
@@ -73,6 +75,7 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
   const Bytes patch = has_patch ? read_input(view.look_patch) : Bytes();
   if (has_patch)
     loaded.document = patched(std::move(loaded.document), text_of(patch), input_name(view.look_patch), loaded.files);
+  std::ranges::copy(look_warnings(loaded.document), std::back_inserter(loaded.warnings));
   std::string digests = content_hash(path, loaded.document);
   if (has_patch) digests += hash128(patch);
   if (view.auto_lights) digests += "lights auto";
@@ -83,7 +86,9 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
 Camera set_up_view(LoadedDocument& loaded, const ViewArguments& view) {
   Camera camera = choose_camera(loaded.document, view.camera, view.width, view.height);
   if (view.camera.empty()) warn_of_choice(loaded, camera);
-  if (view.auto_lights) add_auto_lights(loaded.document, camera);
+  if (view.auto_lights)
+    if (std::string said = add_auto_lights(loaded.document, camera); !said.empty())
+      loaded.warnings.push_back(std::move(said));
   return camera;
 }
 

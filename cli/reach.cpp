@@ -145,6 +145,7 @@ Reach reach_of(const Arguments& arguments) {
   Reach reach;
   add_system(reach);
   for (const NamedInput& input : inputs_of(arguments)) add_input(input.path, reach.readable);
+  for (const fs::path& root : arguments.import.roots) add_input(root, reach.readable);
   // An OpenColorIO config names its tables in many ways, by variables of the environment, too: only the library knows.
   if (std::getenv("OCIO") != nullptr) reach.readable.emplace_back("/");
   const bool has_standard_input = std::ranges::find(arguments.inputs, kStandardInput) != arguments.inputs.end() ||

@@ -169,7 +169,7 @@ TEST(Look, defaults_leave_values_of_a_wrong_type_alone) {
 TEST(Look, automatic_lights_have_free_names_and_light_a_white_surface_to_0_8) {
   LookDocument document = make_look_document(small_gltf());
   document.look["nodes"]["key"] = document.look["nodes"]["Floor"];
-  add_auto_lights(document, choose_camera(document, "auto", 64, 64));
+  (void)add_auto_lights(document, choose_camera(document, "auto", 64, 64));
   for (const char* name : {"key_2", "fill", "rim"}) {
     EXPECT_TRUE(document.look["lights"].contains(name)) << name;
     EXPECT_EQ(look_at(document.look["nodes"][name], "/extensions/KHR_lights_punctual/light"), name);
@@ -180,7 +180,7 @@ TEST(Look, automatic_lights_have_free_names_and_light_a_white_surface_to_0_8) {
 TEST(Look, automatic_key_light_shines_away_from_the_camera) {
   LookDocument document = make_look_document(small_gltf());
   const Camera camera = choose_camera(document, "auto", 64, 64);
-  add_auto_lights(document, camera);
+  (void)add_auto_lights(document, camera);
   const SceneState state(std::move(document), camera, small_pyramids());
   for (LightId id : state.scene().light_order)
     if (state.scene().light(id).node == "key") {

@@ -141,7 +141,7 @@ SceneState imported(const std::filesystem::path& file) {
   LookDocument document = make_look_document(import_gltf(file));
   (void)choose_camera(document, "auto", 8, 4);
   Camera camera = choose_camera(document, "0,0,6:0,0,0:40", 8, 4);
-  add_auto_lights(document, camera);
+  (void)add_auto_lights(document, camera);
   return SceneState(std::move(document), std::move(camera), nullptr);
 }
 

@@ -103,6 +103,19 @@ bool lies_below(const std::filesystem::path& path, const std::filesystem::path& 
   return end == folder.end() && rest != path.end();
 }
 
+/// `base`, and the roots as they are spelled and as they are.
+std::vector<std::filesystem::path> allowed_folders(const std::filesystem::path& base,
+                                                   std::span<const std::filesystem::path> roots) {
+  std::vector<std::filesystem::path> folders{base};
+  for (const std::filesystem::path& root : roots) {
+    std::error_code error;
+    const auto spelled = std::filesystem::absolute(root, error).lexically_normal();
+    folders.push_back(spelled.has_filename() ? spelled : spelled.parent_path());
+    if (auto real = std::filesystem::canonical(root, error); !error) folders.push_back(std::move(real));
+  }
+  return folders;
+}
+
 }  // namespace
 
 Bytes read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
@@ -125,24 +138,31 @@ Bytes read_file(const std::filesystem::path& path, std::size_t limit_bytes) {
   return bytes;
 }
 
-std::filesystem::path contained_path(const std::filesystem::path& folder, std::string_view uri, std::string_view file,
-                                     std::string_view where) {
+std::filesystem::path contained_path(const std::filesystem::path& folder,
+                                     std::span<const std::filesystem::path> roots, std::string_view uri,
+                                     std::string_view file, std::string_view where) {
   const std::string quoted = "\"" + printable(uri) + "\"";
   if (uri.empty()) throw InputError(file, where, "an empty file name");
   if (uri.find('\0') != std::string_view::npos) throw InputError(file, where, quoted + " contains a zero byte");
-  const std::filesystem::path relative(uri);
-  if (relative.is_absolute() || uri.find(':') != std::string_view::npos || uri.find('\\') != std::string_view::npos)
+  const std::filesystem::path name(uri);
+  if (uri.find(':') != std::string_view::npos || uri.find('\\') != std::string_view::npos ||
+      (name.is_absolute() && roots.empty()))
     throw InputError(file, where, quoted + " is not a relative path");
-  for (const auto& part : relative)
-    if (part == "..") throw InputError(file, where, quoted + " leads out of its folder");
 
   std::error_code error;
   const auto base = std::filesystem::canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
   if (error) throw InputError(file, where, "cannot open the folder of " + quoted + ": " + error.message());
-  auto target = std::filesystem::canonical(base / relative, error);
-  if (error == std::errc::no_such_file_or_directory) throw InputError(file, where, "no such file: " + quoted);
+  const std::vector<std::filesystem::path> allowed = allowed_folders(base, roots);
+  const auto require_allowed = [&](const std::filesystem::path& path) {
+    if (std::ranges::any_of(allowed, [&](const auto& above) { return lies_below(path, above); })) return;
+    throw InputError(file, where, quoted + " leads out of its folder (--root DIR allows files below DIR)");
+  };
+  const auto wanted = (base / name).lexically_normal();
+  require_allowed(wanted);
+  auto target = std::filesystem::canonical(wanted, error);
+  if (error == std::errc::no_such_file_or_directory) throw MissingFileError(file, where, "no such file: " + quoted);
   if (error) throw InputError(file, where, "cannot open " + quoted + ": " + error.message());
-  if (!lies_below(target, base)) throw InputError(file, where, quoted + " leads out of its folder");
+  require_allowed(target);
   return target;
 }
 

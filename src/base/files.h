@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
+
 namespace relook {
 
 using Bytes = std::vector<std::byte>;
@@ -29,9 +31,16 @@ inline constexpr std::size_t kLargestInputBytes = std::size_t{8} << 30;
 /// larger than `limit_bytes`, unreadable).
 [[nodiscard]] Bytes read_file(const std::filesystem::path& path, std::size_t limit_bytes = kLargestInputBytes);
 
-/// Resolves a relative URI (already percent-decoded) of a file that must lie below `folder`: no absolute path, no "..",
-/// no symbolic link that leads out. Throws InputError{file, where, ...}.
-[[nodiscard]] std::filesystem::path contained_path(const std::filesystem::path& folder, std::string_view uri,
+/// A file that is named where it may lie, and is not there.
+struct MissingFileError : InputError {
+  using InputError::InputError;
+};
+
+/// Resolves a file name (a URI, already percent-decoded; "a/../b" is "b", RFC 3986 section 5.2.4) to a file below
+/// `folder` or one of `roots`, followed through symbolic links: no name and no link leads elsewhere. Absolute names only
+/// below roots. Throws InputError{file, where, ...}, MissingFileError.
+[[nodiscard]] std::filesystem::path contained_path(const std::filesystem::path& folder,
+                                                   std::span<const std::filesystem::path> roots, std::string_view uri,
                                                    std::string_view file, std::string_view where);
 
 /// Writes to a temporary file beside `path`, checks every write, fsync and close, renames, syncs the folder. On failure

@@ -241,7 +241,7 @@ bool is_manifest_of_cache(const std::filesystem::path& path) {
 
 Bytes load_file(const std::filesystem::path& cache, const CacheFile& file) {
   try {
-    const std::filesystem::path path = contained_path(cache, file.name, file.name, "");
+    const std::filesystem::path path = contained_path(cache, {}, file.name, file.name, "");
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
     if (error) throw CacheDamage(CacheFault::damaged, "the file is missing");

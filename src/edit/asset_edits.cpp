@@ -5,6 +5,7 @@
 #include "edit/transaction.h"
 #include "scene/import.h"
 #include "scene/import_memory.h"
+#include "scene/import_rules.h"
 #include "scene/look_names.h"
 
 namespace relook {
@@ -63,7 +64,7 @@ std::string Transaction::keep_image(std::shared_ptr<const Bytes> bytes) {
 void Transaction::load_image(const std::string& name, const PatchPlace& place) {
   Json& value = *find({"images", name});
   if (!value["uri"].is_string()) throw InputError(place.file, place.where, "expected a string");
-  const std::filesystem::path path = contained_path(folder_, value["uri"].get<std::string>(), place.file, place.where);
+  const std::filesystem::path path = allowed_path(folder_, value["uri"].get<std::string>(), place.file, place.where);
   Bytes content = read_file(path);
   ImportShare share(content.size(), place.file, place.where + ": the image");
   auto bytes = kept_with(std::move(share), std::move(content));
@@ -78,7 +79,7 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
   Json& value = *find({"nodes", node});
   if (!value["asset"].is_string()) throw InputError(place.file, place.where, "expected the name of a glTF file");
   LookDocument part = make_look_document(
-      import_gltf(contained_path(folder_, value["asset"].get<std::string>(), place.file, place.where)));
+      import_gltf(allowed_path(folder_, value["asset"].get<std::string>(), place.file, place.where)));
   value.erase("asset");
   const Renames renames = renames_for(part, document(), node + "/");
   const auto renamed = [&](Section section, const std::string& name) {

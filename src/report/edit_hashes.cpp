@@ -9,6 +9,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "scene/gltf_source.h"
+#include "scene/import_rules.h"
 
 namespace relook {
 namespace {
@@ -29,7 +30,7 @@ void collect_files(const Json& value, std::vector<std::string>& names) {
 std::vector<std::filesystem::path> with_named_files(const Journal& journal, const std::string& name) {
   std::vector<std::filesystem::path> paths;
   try {
-    paths.push_back(contained_path(journal.path.parent_path(), name, journal.file, ""));
+    paths.push_back(allowed_path(journal.path.parent_path(), name, journal.file, ""));
     if (paths.back().extension() == ".gltf" || paths.back().extension() == ".glb")
       std::ranges::copy(external_files(read_gltf_source(paths.back())), std::back_inserter(paths));
   } catch (const InputError&) {  // said by the step itself, or data within the journal

@@ -109,13 +109,10 @@ Camera spelled_camera(std::string_view choice, std::uint32_t width, std::uint32_
   return camera;
 }
 
-double number_at(const Json& value, const char* key, double low, double high, const LookDocument& document,
-                 const std::string& pointer) {
-  if (!value.contains(key) || !value[key].is_number())
-    throw InputError(document.file, pointer, std::string("\"") + key + "\" is missing");
-  const double number = value[key].get<double>();
-  if (!(number > low && number < high)) throw InputError(document.file, pointer + "/" + key, "out of range");
-  return number;
+/// Of a lens that passed the schema.
+double number_at(const Json& lens, const char* key, const LookDocument& document, const std::string& pointer) {
+  if (!lens.contains(key)) throw InputError(document.file, pointer, std::string("\"") + key + "\" is missing");
+  return lens[key].get<double>();
 }
 
 /// A glTF camera (`name` in document.cameras) on a node.
@@ -123,26 +120,27 @@ Camera placed_camera(const LookDocument& document, std::string_view shown_name, 
                      const std::string& node, std::uint32_t width, std::uint32_t height) {
   const Json& gltf = document.cameras.at(name).at("camera");
   const std::string pointer = "/cameras/" + escape_token(name);
+  Json known = gltf;  // a cache's may be wrong
+  cut_to_schema(camera_schema(), known);
+  check_against_schema(camera_schema(), known, document, document.file, pointer);
   Camera camera = blank_camera(shown_name, width, height);
   camera.node = node;
   const WideTransform world = unscaled_transform(document, node);
   camera.eye = Wide(world[3][0], world[3][1], world[3][2]);
-  if (!is_in_range(world) || !is_invertible(rounded(world, camera.eye)))
+  if (!is_in_range(world) || dimensions_of(rounded(world, camera.eye)) < 3)
     throw InputError(document.file, "/nodes/" + escape_token(node), "the camera's node is scaled to nothing");
   look_along(camera, -Wide(world[2][0], world[2][1], world[2][2]), Wide(world[1][0], world[1][1], world[1][2]));
   camera.orthographic = gltf.value("type", "") == "orthographic";
   const Json& lens = gltf.value(camera.orthographic ? "orthographic" : "perspective", Json::object());
-  const auto number = [&](const char* key, double low, double high) {
-    return number_at(lens, key, low, high, document, pointer);
-  };
-  const double half_height =
-      camera.orthographic ? number("ymag", 1e-9, 1e9) : std::tan(number("yfov", 1e-4, 3.1416) / 2);
+  const auto number = [&](const char* key) { return number_at(lens, key, document, pointer); };
+  const double half_height = camera.orthographic ? std::abs(number("ymag")) : std::tan(number("yfov") / 2);
   double half_width = half_height * width / height;
-  if (camera.orthographic && lens.contains("xmag")) half_width = number("xmag", 1e-9, 1e9);
-  if (!camera.orthographic && lens.contains("aspectRatio")) half_width = half_height * number("aspectRatio", 1e-4, 1e4);
+  if (camera.orthographic && lens.contains("xmag")) half_width = std::abs(number("xmag"));
+  if (!camera.orthographic && lens.contains("aspectRatio")) half_width = half_height * number("aspectRatio");
+  if (!(half_width > 0 && half_height > 0)) throw InputError(document.file, pointer, "the camera sees nothing: its angle or size is 0");
   show_whole(camera, half_width, half_height);
-  if (lens.contains("znear")) camera.near = static_cast<float>(number("znear", -1e-9, 1e9));
-  if (lens.contains("zfar")) camera.far = static_cast<float>(number("zfar", 0, 3.4e38));
+  if (lens.contains("znear")) camera.near = static_cast<float>(number("znear"));
+  if (lens.contains("zfar")) camera.far = static_cast<float>(number("zfar"));
   return camera;
 }
 

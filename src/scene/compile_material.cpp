@@ -201,9 +201,6 @@ Material compile_material(const CompileContext& context, const std::string& name
   set_core(value, m);
   set_extensions(value["extensions"], m);
   set_relook(value["extras"]["relook"], m);
-  if (m.ior != 0 && m.ior < 1)
-    throw LookError(context.file, pointer + "/extensions/KHR_materials_ior/ior",
-                    "an index of refraction is 0 or at least 1");
   for (const SlotPlace& place : kSlotPlaces)
     if (const Json* info = slot_info(value, place))
       m.slot(place.slot) = slot_of(context, *info, is_color_slot(place.slot), pointer + pointer_to(place));
@@ -257,7 +254,7 @@ Light compile_light(std::string_view file, const std::string& name, const Json& 
   if (light.kind != LightKind::spot) return light;
   light.inner_cone = float_of(value["spot"]["innerConeAngle"]);
   light.outer_cone = float_of(value["spot"]["outerConeAngle"]);
-  if (!(light.inner_cone < light.outer_cone))
+  if (!(light.inner_cone <= light.outer_cone))
     throw LookError(file, pointer + "/spot/innerConeAngle", "the inner cone is not inside the outer cone");
   return light;
 }
@@ -274,13 +271,6 @@ Environment compile_environment(const CompileContext& context, const Json& value
 
 void check_texture_entity(const LookDocument& document, std::string_view file, Section section, const Json& value,
                           const std::string& pointer) {
-  if (section == Section::samplers)
-    for (const char* key : {"wrapS", "wrapT"}) {
-      const int wrap = value.value(key, 10497);
-      if (wrap != 10497 && wrap != 33071 && wrap != 33648)
-        throw LookError(file, pointer + "/" + key,
-                        std::to_string(wrap) + " is not one of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
-    }
   if (section != Section::images) return;
   const std::string& content = value["extras"]["relook"].value("content", "");
   if (!document.assets->images.contains(content))

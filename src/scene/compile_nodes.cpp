@@ -262,8 +262,10 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
         const WideTransform world = is_skinned             ? WideTransform().setTranslation(pose.place)
                                     : instances == nullptr ? record.world
                                                            : widened((*instances)[object.instance]) * record.world;
+        if (instances != nullptr && !is_in_range(world))
+          fail(node_pointer(name), "an instance's place in the world is out of range (1e12)");
         object.to_world = rounded(world, scene_.camera.eye);
-        object.alive = record.visible && is_invertible(object.to_world);
+        object.alive = record.visible && dimensions_of(object.to_world) >= 2;
         const ObjectId id = object_slot(name, object.primitive, object.instance);
         object.key = scene_.object(id).key;
         set_object(id, object);

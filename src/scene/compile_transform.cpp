@@ -1,5 +1,7 @@
 #include "scene/compile_transform.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scene/look_schema.h"
@@ -28,6 +30,27 @@ WideTransform matrix_of(const Json& node, std::string_view file, const std::stri
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) matrix[row][column] = m[static_cast<std::size_t>(row * 4 + column)];
   return matrix;
+}
+
+using Vector = Imath::V3d;
+
+/// Where the axes go.
+std::array<Vector, 3> rows_of(const Transform& m) {
+  std::array<Vector, 3> rows;
+  for (std::size_t row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      rows[row][column] = static_cast<double>(m[static_cast<int>(row)][column]);
+  return rows;
+}
+
+/// Perpendicular to all three, which lie in a plane.
+Vector largest_cross(const std::array<Vector, 3>& vectors) {
+  Vector largest(0, 0, 0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector cross = vectors[i].cross(vectors[(i + 1) % 3]);
+    if (cross.length2() > largest.length2()) largest = cross;
+  }
+  return largest;
 }
 
 }  // namespace
@@ -67,20 +90,54 @@ bool is_in_range(const WideTransform& world) {
   return true;
 }
 
-bool is_invertible(const Transform& to_world) {
+int dimensions_of(const Transform& to_world) {
   constexpr double kLeastRow = 1e-12, kLeastSkewness = 1e-9;
-  Imath::V3d rows[3];
-  for (int row = 0; row < 3; ++row)
-    rows[row] = Imath::V3d(static_cast<double>(to_world[row][0]), static_cast<double>(to_world[row][1]),
-                           static_cast<double>(to_world[row][2]));
+  const std::array<Vector, 3> rows = rows_of(to_world);
   double product = 1;
-  for (const Imath::V3d& row : rows) {
-    const double length = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
-    if (!(length > kLeastRow)) return false;
+  int long_rows = 0;
+  for (const Vector& row : rows) {
+    const double length = row.length();
+    if (length > kLeastRow) ++long_rows;
     product *= length;
   }
-  const double determinant = rows[0].dot(rows[1].cross(rows[2]));
-  return std::abs(determinant) > kLeastSkewness * product;
+  if (long_rows == 3 && std::abs(rows[0].dot(rows[1].cross(rows[2]))) > kLeastSkewness * product) return 3;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector &a = rows[i], &b = rows[(i + 1) % 3];
+    if (a.length() > kLeastRow && b.length() > kLeastRow &&
+        a.cross(b).length() > kLeastSkewness * a.length() * b.length())
+      return 2;
+  }
+  return long_rows > 0 ? 1 : 0;
+}
+
+SheetTransform sheet_transform(const Transform& to_world) {
+  const std::array<Vector, 3> rows = rows_of(to_world);
+  std::array<Vector, 3> columns;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      columns[static_cast<std::size_t>(column)][row] = rows[static_cast<std::size_t>(row)][column];
+  const Vector lost = largest_cross(columns).normalized();   // in object space
+  const Vector across = largest_cross(rows).normalized();  // of the sheet, in the world
+  double size = 0;
+  for (const Vector& row : rows) size = std::max(size, row.length());
+  SheetTransform sheet;
+  WideTransform filled = widened(to_world);
+  for (int row = 0; row < 3; ++row) {
+    const Vector kept = rows[static_cast<std::size_t>(row)];
+    for (int column = 0; column < 3; ++column) {
+      sheet.flatten[row][column] =
+          static_cast<float>((row == column ? 1.0 : 0.0) - lost[row] * lost[column]) + 0.0F;
+      filled[row][column] = kept[column] + lost[row] * across[column] * size;
+    }
+  }
+  sheet.to_world = rounded(filled, WidePoint(0, 0, 0));
+  const std::array<Vector, 3> whole = rows_of(sheet.to_world);
+  if (whole[0].dot(whole[1].cross(whole[2])) > 0) return sheet;
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column)
+      filled[row][column] -= 2 * lost[row] * across[column] * size;
+  sheet.to_world = rounded(filled, WidePoint(0, 0, 0));
+  return sheet;
 }
 
 Transform rounded(const WideTransform& in_world, const WidePoint& eye) {

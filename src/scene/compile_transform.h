@@ -18,8 +18,17 @@ using WideTransform = Imath::M44d;
 /// Every entry finite and at most 1e12: what rays can work with.
 [[nodiscard]] bool is_in_range(const WideTransform& world);
 
-/// False for transforms that flatten a mesh to nothing (a scale of 0): it cannot be seen, and has no inverse.
-[[nodiscard]] bool is_invertible(const Transform& to_world);
+/// What a mesh becomes: 3, a body; 2, a sheet (a scale of 0 along one axis); less, a line or a point, which cannot be seen.
+[[nodiscard]] int dimensions_of(const Transform& to_world);
+
+/// A transform that flattens, in two parts: `flatten` within object space, along what the transform loses, and an
+/// invertible `to_world` that does the same to what is flat. Front faces are those that are counter-clockwise in the
+/// world (glTF 2.0 section 3.7.4: only a negative determinant turns them around).
+struct SheetTransform {
+  Transform flatten, to_world;
+};
+/// Requires: dimensions_of(to_world) == 2.
+[[nodiscard]] SheetTransform sheet_transform(const Transform& to_world);
 
 /// Relative to `eye`.
 [[nodiscard]] Transform rounded(const WideTransform& world, const WidePoint& eye);

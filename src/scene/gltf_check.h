@@ -1,6 +1,6 @@
-// Checks of a glTF document before any parser or decoder trusts it (glTF 2.0 sections 3 and 5): every reference in
-// range, every number of the right type, finite and in its range, the nodes a forest. What only concerns parts that
-// relook does not read (animations, min and max of accessors) is not checked.
+// Checks of a glTF document's structure before any parser or decoder trusts it (glTF 2.0 sections 3 and 5): every
+// reference, count and byte range sound, the nodes a forest; of used and unused things alike. What values say is for
+// gltf_values.h. What only concerns parts that relook does not read (animations, min and max of accessors) is not checked.
 #pragma once
 #include <string>
 #include <string_view>
@@ -9,10 +9,6 @@
 #include "base/json.h"
 
 namespace relook {
-
-/// Magnitude limits of what a file may contain; journals obey the same ones.
-inline constexpr float kLargestTransform = 1e6F;
-inline constexpr float kLargestFactor = 1e6F;
 
 /// Throws InputError{file, pointer, ...}. Appends sentences about what will be ignored.
 void check_document(const Json& gltf, std::string_view file, std::vector<std::string>& warnings);

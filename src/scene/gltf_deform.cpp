@@ -29,7 +29,7 @@ std::vector<Imath::V3f> target_column(const PrimitiveSource& source, std::size_t
   if (accessor.count != count)
     source.fail(place, "has " + std::to_string(accessor.count) + " elements, the primitive has " +
                            std::to_string(count) + " vertices");
-  const auto values = column_of(source, accessor, place, {3, 3, true, false}, kLargestCoordinate);
+  const auto values = column_of(source, accessor, place, {3, 3, true, false}, kLargestCoordinate, source.is_used);
   if (std::ranges::all_of(values, [](float value) { return value == 0; })) return {};
   std::vector<Imath::V3f> column;
   column.reserve(values.size() / 3);
@@ -82,8 +82,15 @@ void decode_joints(const PrimitiveSource& source, Mesh& mesh) {
     if ((joints.component != Component::u8 && joints.component != Component::u16) || joints.normalized)
       source.fail(attribute_place(joints_of(set)), "joints must be unsigned integers of 8 or 16 bits");
     constexpr float kMostJoint = 65535, kLargestWeight = 1e6F;
-    const auto indices = attribute(source, joints_of(set), {kSetWidth, kSetWidth, true, false}, kMostJoint);
-    const auto weights = attribute(source, weights_of(set), {kSetWidth, kSetWidth, true, true}, kLargestWeight);
+    const auto indices = attribute(source, joints_of(set), {kSetWidth, kSetWidth, true, false}, kMostJoint,
+                                   source.is_skinned);
+    const auto weights = attribute(source, weights_of(set), {kSetWidth, kSetWidth, true, true}, kLargestWeight,
+                                   source.is_skinned);
+    if (indices.empty() || weights.empty()) {
+      mesh.joints.clear();
+      mesh.joint_weights.clear();
+      return;
+    }
     for (std::size_t vertex = 0; vertex < vertices; ++vertex)
       for (std::size_t i = 0; i < kSetWidth; ++i) {
         const std::size_t to = vertex * influences + set * kSetWidth + i, from = vertex * kSetWidth + i;

@@ -27,7 +27,7 @@ std::vector<float> instance_values(const JsonView& attributes, const GltfModel& 
                         place->pointer() + ": the instances"));
   std::vector<float> values = read_floats(model, accessor);
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!(std::abs(values[i]) <= kLargestTransform))
+    if (!(std::abs(values[i]) <= kLargestMatrix))
       place->fail("element " + std::to_string(i / width) + " is not finite or too large");
   return values;
 }
@@ -72,14 +72,14 @@ std::vector<Transform> node_instances(const JsonView& attributes, const GltfMode
 
 }  // namespace
 
-std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model, std::string_view file,
-                                                     ImportShare& share) {
+std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model, const GltfUse& use,
+                                                     std::string_view file, ImportShare& share) {
   std::vector<std::vector<Transform>> instances;
   std::size_t total = 0;
-  for_each_object(JsonView(gltf, file), "nodes", [&](const JsonView& node, std::size_t) {
+  for_each_object(JsonView(gltf, file), "nodes", [&](const JsonView& node, std::size_t i) {
     auto& of_node = instances.emplace_back();
     const auto instancing = extension(node, "EXT_mesh_gpu_instancing");
-    if (!instancing || !node.has("mesh")) return;
+    if (!instancing || !node.has("mesh") || !use.nodes[i]) return;
     of_node = node_instances(instancing->at("attributes"), model, share);
     total += of_node.size();
     if (total > kMostInstances) node.fail("more than " + std::to_string(kMostInstances) + " instances in the file");

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -23,6 +24,9 @@ Normal normalized(float x, float y, float z) {
 }
 
 constexpr std::uint32_t kRestart = 0xFFFFFFFFU;
+constexpr float kAnySize = std::numeric_limits<float>::max();  // of a column that is normalized or clamped
+
+float bounded(float coordinate) { return std::clamp(coordinate, -kLargestCoordinate, kLargestCoordinate); }
 
 /// The vertices that triangles are made of; kRestart where a strip or fan begins anew.
 std::vector<std::uint32_t> vertex_sequence(const PrimitiveSource& source, std::size_t vertices) {
@@ -51,7 +55,7 @@ std::vector<std::uint32_t> vertex_sequence(const PrimitiveSource& source, std::s
       source.fail("/indices", "index " + std::to_string(i) + " is " + std::to_string(sequence[i]) + ", but there are " +
                                   std::to_string(vertices) + " vertices");
   }
-  if (restarts) source.warn("/indices", "primitive restart values, which glTF does not have, begin new strips");
+  if (restarts) source.forgive("/indices", "primitive restart values, which glTF does not have, begin new strips");
   return sequence;
 }
 
@@ -137,7 +141,7 @@ void replace_missing_normals(Mesh& mesh) {
 }
 
 void decode_normals(const PrimitiveSource& source, Mesh& mesh) {
-  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kLargestCoordinate);
+  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kAnySize, source.is_used);
   mesh.normals.reserve(values.size() / 3);
   for (std::size_t i = 0; i < values.size(); i += 3)
     mesh.normals.push_back(normalized(values[i], values[i + 1], values[i + 2]));
@@ -147,7 +151,7 @@ void decode_normals(const PrimitiveSource& source, Mesh& mesh) {
 /// Tangents without a direction, a side or normals make the whole column useless: it is derived from uv then.
 void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
   if (mesh.normals.empty()) return;  // glTF 3.7.2.1
-  const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kLargestCoordinate);
+  const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kAnySize, false);
   mesh.tangents.reserve(values.size() / 4);
   for (std::size_t i = 0; i < values.size(); i += 4) {
     const Normal direction = normalized(values[i], values[i + 1], values[i + 2]);
@@ -157,7 +161,7 @@ void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
     }
     const float handedness = values[i + 3];
     if (handedness != 1 && handedness != -1) {
-      source.warn(attribute_place("TANGENT"),
+      source.forgive(attribute_place("TANGENT"),
                   "element " + std::to_string(source.vertices[i / 4]) +
                       " has a w that is neither 1 nor -1; tangents follow from the texture coordinates");
       mesh.tangents.clear();
@@ -168,7 +172,7 @@ void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
 }
 
 void decode_colors(const PrimitiveSource& source, Mesh& mesh) {
-  const auto values = attribute(source, "COLOR_0", {3, 4, true, true}, kLargestCoordinate);
+  const auto values = attribute(source, "COLOR_0", {3, 4, true, true}, kAnySize, source.is_used);
   if (values.empty()) return;
   const std::size_t width = source.accessor("COLOR_0")->width;
   const auto clamped = [&](std::size_t i) { return std::clamp(values[i], 0.0F, 1.0F); };
@@ -185,7 +189,8 @@ Mesh decode_primitive(PrimitiveSource source) {
   const std::size_t count = source.accessor("POSITION")->count;
   mesh.triangles = triangles_of(vertex_sequence(source, count), source.primitive.mode);
   source.vertices = gather_vertices(mesh.triangles);
-  const auto positions = attribute(source, "POSITION", {3, 3, true, false}, kLargestCoordinate);
+  const auto positions = attribute(source, "POSITION", {3, 3, true, false}, kLargestCoordinate, source.is_used);
+  if (positions.empty()) return {};
   mesh.positions.reserve(positions.size() / 3);
   for (std::size_t i = 0; i < positions.size(); i += 3) {
     mesh.positions.emplace_back(positions[i], positions[i + 1], positions[i + 2]);
@@ -194,9 +199,10 @@ Mesh decode_primitive(PrimitiveSource source) {
   decode_normals(source, mesh);
   decode_tangents(source, mesh);
   for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
-    const auto values = attribute(source, "TEXCOORD_" + std::to_string(set), {2, 2, true, false}, kLargestCoordinate);
+    const auto values = attribute(source, "TEXCOORD_" + std::to_string(set), {2, 2, true, false}, kAnySize,
+                                  source.is_used && source.read.uv[set]);
     mesh.uv[set].reserve(values.size() / 2);
-    for (std::size_t i = 0; i < values.size(); i += 2) mesh.uv[set].emplace_back(values[i], values[i + 1]);
+    for (std::size_t i = 0; i < values.size(); i += 2) mesh.uv[set].emplace_back(bounded(values[i]), bounded(values[i + 1]));
   }
   decode_colors(source, mesh);
   decode_targets(source, mesh);
@@ -270,7 +276,7 @@ struct LeftOut {
 
 }  // namespace
 
-std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
+std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, const GltfUse& use, std::string_view file,
                                              std::vector<std::string>& warnings, ImportShare& share) {
   check_total(model, file, share);
   std::vector<std::vector<Mesh>> meshes;
@@ -284,7 +290,8 @@ std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string
         (primitive.mode < 4 ? not_triangles : without_positions).add(pointer);
         continue;
       }
-      Mesh mesh = decode_primitive({model, primitive, file, pointer, warnings, {}});
+      Mesh mesh = decode_primitive({model, primitive, file, pointer, warnings, use.meshes[m],
+                                    use.skinned_meshes[m], use.primitives[m][p], {}});
       mesh.primitive = static_cast<std::uint32_t>(p);
       if (mesh.triangles.empty())
         empty.add(pointer);

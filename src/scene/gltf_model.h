@@ -9,12 +9,16 @@
 #include <vector>
 
 #include "base/json.h"
+#include "scene/gltf_use.h"
 #include "scene/import.h"
 #include "scene/import_memory.h"
 
 namespace relook {
 
 inline constexpr std::size_t kNoIndex = std::numeric_limits<std::size_t>::max();
+
+/// Of instances and inverse binds: products with places in the world stay finite.
+inline constexpr float kLargestMatrix = 1e12F;
 
 struct GltfBufferView {
   std::size_t buffer = 0, offset = 0, length = 0;
@@ -58,10 +62,11 @@ struct GltfModel {
                                     std::string_view file);
 
 /// All triangle primitives, in order. Checks what can only be seen in the data: finite values, indices below the vertex
-/// count, no primitive restart. Throws InputError{file, pointer, ...}, for a small file that asks for much, too.
+/// count. A column with a wrong value that nothing in the scene reads is left out, and so is a mesh. Throws InputError{file, pointer, ...}, for a small file that asks for much, too.
 /// `share`: takes the bytes of every column before it is made; throws ResourceError where they are not left.
-[[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, std::string_view file,
-                                                           std::vector<std::string>& warnings, ImportShare& share);
+[[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, const GltfUse& use,
+                                                           std::string_view file, std::vector<std::string>& warnings,
+                                                           ImportShare& share);
 
 /// Inverse bind matrices of every skin, one a joint: identities without an accessor. Checks skins as a whole. A skin that
 /// no node of the active scene has, has none; nor has one of which the scene lacks a joint, and the nodes of `gltf` lose
@@ -72,8 +77,9 @@ struct GltfModel {
                                                                std::vector<std::string>& warnings,
                                                                ImportShare& share);
 
-/// EXT_mesh_gpu_instancing of every node. `share`: as above. Throws InputError, ResourceError.
+/// EXT_mesh_gpu_instancing of every node that is used. `share`: as above. Throws InputError, ResourceError.
 [[nodiscard]] std::vector<std::vector<Transform>> decode_instances(const Json& gltf, const GltfModel& model,
-                                                                   std::string_view file, ImportShare& share);
+                                                                   const GltfUse& use, std::string_view file,
+                                                                   ImportShare& share);
 
 }  // namespace relook

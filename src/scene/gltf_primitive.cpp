@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "scene/import_rules.h"
 
 namespace relook {
 namespace {
@@ -29,6 +30,10 @@ void PrimitiveSource::warn(const std::string& place, std::string_view what) cons
   warnings.push_back(pointer + place + ": " + std::string(what));
 }
 
+void PrimitiveSource::forgive(const std::string& place, std::string_view what) const {
+  tolerate(file, pointer + place, what, warnings);
+}
+
 const GltfAccessor* PrimitiveSource::accessor(std::string_view semantic) const {
   const auto found = primitive.attributes.find(semantic);
   return found == primitive.attributes.end() ? nullptr : &model.accessors[found->second];
@@ -37,24 +42,26 @@ const GltfAccessor* PrimitiveSource::accessor(std::string_view semantic) const {
 std::string attribute_place(std::string_view semantic) { return "/attributes/" + escape_token(semantic); }
 
 std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& accessor, const std::string& place,
-                             const ColumnFormat& format, float largest) {
+                             const ColumnFormat& format, float largest, bool is_read) {
   check_format(source, accessor, place, format);
   if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail(place, fault);
   std::vector<float> values = read_floats(source.model, accessor, source.vertices);
   const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
-  if (bad != values.end())
-    source.fail(place,
-                "element " +
-                    std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) / accessor.width]) +
-                    (std::isfinite(*bad) ? " is too large" : " is not finite"));
-  return values;
+  if (bad == values.end()) return values;
+  const std::string fault =
+      "element " +
+      std::to_string(source.vertices[static_cast<std::size_t>(bad - values.begin()) / accessor.width]) +
+      (std::isfinite(*bad) ? " is too large" : " is not finite");
+  if (is_read) source.fail(place, fault);
+  source.forgive(place, fault + ": the column is ignored");
+  return {};
 }
 
 std::vector<float> attribute(const PrimitiveSource& source, std::string_view semantic, const ColumnFormat& format,
-                             float largest) {
+                             float largest, bool is_read) {
   const GltfAccessor* accessor = source.accessor(semantic);
   if (accessor == nullptr) return {};
-  return column_of(source, *accessor, attribute_place(semantic), format, largest);
+  return column_of(source, *accessor, attribute_place(semantic), format, largest, is_read);
 }
 
 }  // namespace relook

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/gltf_accessor.h"
+#include "scene/gltf_use.h"
 
 namespace relook {
 
@@ -18,11 +19,16 @@ struct PrimitiveSource {
   std::string_view file;
   std::string pointer;  // "/meshes/0/primitives/1"
   std::vector<std::string>& warnings;
+  bool is_used = true;    // the scene shows the mesh
+  bool is_skinned = true;  // and bends it with a skin
+  GltfUse::Primitive read;
   std::vector<std::uint32_t> vertices;  // those that triangles name, increasing: the mesh has no others
 
   /// `place`: "/attributes/POSITION", below the primitive. Throws InputError.
   [[noreturn]] void fail(const std::string& place, std::string_view what) const;
   void warn(const std::string& place, std::string_view what) const;
+  /// tolerate() at that place.
+  void forgive(const std::string& place, std::string_view what) const;
   /// Null without the attribute.
   [[nodiscard]] const GltfAccessor* accessor(std::string_view semantic) const;
 };
@@ -37,12 +43,14 @@ struct ColumnFormat {
 
 [[nodiscard]] std::string attribute_place(std::string_view semantic);  // "/attributes/POSITION"
 
-/// An accessor's numbers at the vertices that are used, all finite and at most `largest` in magnitude.
+/// An accessor's numbers at the vertices that are used, all finite and at most `largest` in magnitude. `is_read`: whether
+/// the scene reads the column; if not, one with a wrong number is empty.
 [[nodiscard]] std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& accessor,
-                                           const std::string& place, const ColumnFormat& format, float largest);
+                                           const std::string& place, const ColumnFormat& format, float largest,
+                                           bool is_read);
 /// The same of an attribute; empty without it.
 [[nodiscard]] std::vector<float> attribute(const PrimitiveSource& source, std::string_view semantic,
-                                           const ColumnFormat& format, float largest);
+                                           const ColumnFormat& format, float largest, bool is_read);
 
 /// Morph targets (glTF 2.0 section 3.7.2.2) of the columns that the mesh has.
 void decode_targets(const PrimitiveSource& source, Mesh& mesh);

@@ -25,7 +25,7 @@ std::vector<Transform> inverse_binds(const GltfModel& model, const JsonView& pla
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column) {
         const float number = numbers[i * kNumbers + static_cast<std::size_t>(row * 4 + column)];
-        if (!(std::abs(number) <= kLargestTransform))
+        if (!(std::abs(number) <= kLargestMatrix))
           place.fail("matrix " + std::to_string(i) + " is not finite or too large");
         constexpr float kRounding = 1e-3F;
         const float affine = row == 3 ? 1.0F : 0.0F;

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "scene/gltf_json.h"
 #include "scene/import_memory.h"
+#include "scene/import_rules.h"
 
 namespace relook {
 namespace {
@@ -28,26 +29,35 @@ std::uint32_t little_endian_32(BytesView bytes, std::size_t offset) {
   throw InputError(file, "byte " + std::to_string(offset), what);
 }
 
-Json parse_gltf_text(std::string_view text, const std::string& file) {
-  if (text.starts_with("\xEF\xBB\xBF")) throw InputError(file, "byte 0", "starts with a byte order mark");
-  Json json = parse_json(text, file);
-  JsonView(json, file).require_object();
-  return json;
+void read_json(std::string_view text, GltfSource& source) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) {
+    tolerate(source.file, "byte 0", "starts with a byte order mark", source.warnings);
+    text.remove_prefix(kByteOrderMark.size());
+  }
+  source.json = parse_json(text, source.file);
+  JsonView(source.json, source.file).require_object();
 }
 
-void check_glb_header(BytesView bytes, const std::string& file) {
+/// The bytes that the header counts: what is behind them is ignored.
+BytesView glb_content(BytesView bytes, GltfSource& source) {
+  const std::string& file = source.file;
   if (bytes.size() < kGlbHeaderBytes) fail_at(file, bytes.size(), "the GLB header is cut short");
   if (little_endian_32(bytes, 0) != kGlbMagic) fail_at(file, 0, "is not a GLB file");
   if (const auto version = little_endian_32(bytes, 4); version != 2)
     fail_at(file, 4, "GLB version " + std::to_string(version) + " is not supported");
-  if (const auto length = little_endian_32(bytes, 8); length != bytes.size())
-    fail_at(file, 8,
-            "the GLB header says " + std::to_string(length) + " bytes, the file has " + std::to_string(bytes.size()));
+  const std::size_t length = little_endian_32(bytes, 8);
+  if (length == bytes.size()) return bytes;
+  const std::string fault =
+      "the GLB header says " + std::to_string(length) + " bytes, the file has " + std::to_string(bytes.size());
+  if (length > bytes.size() || length < kGlbHeaderBytes) fail_at(file, 8, fault);
+  tolerate(file, "byte 8", fault, source.warnings);
+  return bytes.first(length);
 }
 
-/// Chunks must fill the file exactly: JSON first, at most one BIN, second; chunks of unknown types are skipped.
-void read_glb(BytesView bytes, GltfSource& source) {
-  check_glb_header(bytes, source.file);
+/// Chunks must fill the counted bytes exactly: JSON first, at most one BIN, second; chunks of unknown types are skipped.
+void read_glb(BytesView file, GltfSource& source) {
+  const BytesView bytes = glb_content(file, source);
   std::size_t offset = kGlbHeaderBytes;
   for (std::size_t index = 0; offset < bytes.size(); ++index) {
     if (bytes.size() - offset < kChunkHeaderBytes) fail_at(source.file, offset, "a chunk header is cut short");
@@ -59,7 +69,7 @@ void read_glb(BytesView bytes, GltfSource& source) {
     const BytesView content = bytes.subspan(offset + kChunkHeaderBytes, length);
     if ((index == 0) != (type == kJsonChunk)) fail_at(source.file, offset, "the first chunk, and no other, is JSON");
     if (type == kJsonChunk) {
-      source.json = parse_gltf_text(text_of(content), source.file);
+      read_json(text_of(content), source);
     } else if (type == kBinaryChunk) {
       if (index != 1) fail_at(source.file, offset, "the binary chunk is not the second chunk");
       source.has_binary_chunk = true;
@@ -100,11 +110,14 @@ Bytes base64_decoded(std::string_view text, const JsonView& place) {
   return bytes;
 }
 
+/// Whether two texts are equal but for the case of ASCII letters; `lower` has none in upper case.
+bool is_same_word(std::string_view text, std::string_view lower) {
+  return std::ranges::equal(text, lower, [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+}
+
 bool is_data_uri(std::string_view uri) {
   constexpr std::string_view kScheme = "data:";
-  return uri.size() >= kScheme.size() && std::equal(kScheme.begin(), kScheme.end(), uri.begin(), [](char a, char b) {
-           return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b);
-         });
+  return is_same_word(uri.substr(0, kScheme.size()), kScheme);
 }
 
 Bytes data_uri_content(std::string_view uri, const JsonView& place) {
@@ -112,16 +125,17 @@ Bytes data_uri_content(std::string_view uri, const JsonView& place) {
   if (comma == std::string_view::npos) place.fail("a data URI without a comma");
   const std::string_view header = uri.substr(0, comma), content = uri.substr(comma + 1);
   if (header.find(";;") != std::string_view::npos) place.fail("a data URI with an empty parameter");
-  if (header.ends_with(";base64")) return base64_decoded(content, place);
+  constexpr std::string_view kBase64 = ";base64";
+  if (header.size() >= kBase64.size() && is_same_word(header.substr(header.size() - kBase64.size()), kBase64))
+    return base64_decoded(content, place);
   const std::string plain = percent_decoded(content, place.file(), place.pointer());
   const BytesView bytes = bytes_of(plain);
   return {bytes.begin(), bytes.end()};
 }
 
 std::filesystem::path external_path(const GltfSource& source, const JsonView& place, const std::string& uri) {
-  if (source.is_glb) place.fail("a .glb file may not name external files");
   const std::string name = percent_decoded(uri, source.file, place.pointer());
-  return contained_path(source.folder, name, source.file, place.pointer());
+  return allowed_path(source.folder, name, source.file, place.pointer());
 }
 
 Bytes read_external(const std::filesystem::path& path, const JsonView& place) {
@@ -229,7 +243,7 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
   if (source.is_glb)
     read_glb(bytes, source);
   else
-    source.json = parse_gltf_text(text_of(bytes), source.file);
+    read_json(text_of(bytes), source);
   return source;
 }
 
@@ -242,12 +256,19 @@ std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source, ImportS
   return buffers;
 }
 
-std::vector<EncodedImage> load_images(const GltfSource& source,
-                                      const std::vector<std::vector<unsigned char>>& buffers) {
+std::vector<EncodedImage> load_images(const GltfSource& source, const std::vector<std::vector<unsigned char>>& buffers,
+                                      const std::vector<bool>& used, std::vector<std::string>& warnings) {
   std::vector<EncodedImage> images;
   ImageLoader loader(source, buffers);
-  for_each_object(JsonView(source.json, source.file), "images", [&](const JsonView& image, std::size_t) {
-    images.push_back({"", loader.load(image)});
+  for_each_object(JsonView(source.json, source.file), "images", [&](const JsonView& image, std::size_t i) {
+    images.emplace_back();
+    try {
+      images.back().bytes = loader.load(image);
+    } catch (const MissingFileError&) {
+      if (used[i]) throw;
+      const std::string where = image.pointer() + "/uri";
+      tolerate(source.file, where, "no such file: " + image.at("uri").text() + "; the scene does not use it: ignored", warnings);
+    }
   });
   return images;
 }

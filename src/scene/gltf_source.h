@@ -1,5 +1,5 @@
 // The bytes of a glTF file and of everything it refers to: GLB framing (glTF 2.0 section 4), JSON text, data URIs and
-// files contained below the scene's folder. Nothing here trusts a length. Called by import.cpp.
+// files below the scene's folder or the roots (import_rules.h). Nothing here trusts a length. Called by import.cpp.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -17,10 +17,11 @@ namespace relook {
 struct GltfSource {
   std::string file;              // as named by the user, for messages
   std::filesystem::path folder;  // external files lie below it
-  bool is_glb = false;           // a .glb gets no external files
+  bool is_glb = false;
   Json json;
   bool has_binary_chunk = false;
   Bytes binary_chunk;
+  std::vector<std::string> warnings;  // of its framing
 };
 
 /// Throws InputError{file, "byte N" or pointer, ...}.
@@ -30,10 +31,11 @@ struct GltfSource {
 /// out of `source`. Requires: /buffers passed check_data_layout().
 [[nodiscard]] std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source, ImportShare& share);
 
-/// The encoded bytes of every image, none for an image without uri and buffer view. Requires: /images and /bufferViews
-/// passed their checks.
+/// The encoded bytes of every image, none for an image without uri and buffer view, or whose file is missing though
+/// `used` (by image) does not name it. Requires: /images and /bufferViews passed their checks.
 [[nodiscard]] std::vector<EncodedImage> load_images(const GltfSource& source,
-                                                    const std::vector<std::vector<unsigned char>>& buffers);
+                                                    const std::vector<std::vector<unsigned char>>& buffers,
+                                                    const std::vector<bool>& used, std::vector<std::string>& warnings);
 
 /// The files that a scene's buffers and images name, as far as they are there and lie where they may.
 [[nodiscard]] std::vector<std::filesystem::path> external_files(const GltfSource& source);

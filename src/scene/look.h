@@ -34,8 +34,9 @@ struct LookDocument {
 /// Fills the defaults of one value of a section in place (an added material, node, ...). Idempotent.
 void fill_defaults(Section section, Json& value);
 
-/// --lights auto: adds lights and nodes `key`, `fill` and `rim` around the bounds of the scene.
-void add_auto_lights(LookDocument& document, const Camera& camera);
+/// --lights auto: adds lights and nodes `key`, `fill` and `rim`, which shine from outside, and a `lamp` at a camera in a
+/// closed room, which is said in a sentence; "" without.
+[[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera);
 
 /// Resolves --camera NAME | auto | EYE:TARGET:FOV ("" takes the only or first camera) at a resolution in pixels.
 /// Throws InputError naming the flag when the scene has no camera.

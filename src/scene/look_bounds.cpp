@@ -55,16 +55,6 @@ std::map<std::string, Place> places_of(const LookDocument& document, std::string
   return places;
 }
 
-void add_corners(const Box& box, const WideTransform& world, WideBox& bounds) {
-  if (box.isEmpty()) return;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    const Imath::V3d local(static_cast<double>((corner & 1U) != 0 ? box.max.x : box.min.x),
-                           static_cast<double>((corner & 2U) != 0 ? box.max.y : box.min.y),
-                           static_cast<double>((corner & 4U) != 0 ? box.max.z : box.min.z));
-    bounds.extendBy(local * world);
-  }
-}
-
 /// Of a node whose skin is whole: wrong ones are for the compiler to refuse.
 Pose pose_of(const LookDocument& document, const std::map<std::string, Place>& places, const Json& node) {
   const Json* name = member(node, "/skin");
@@ -78,14 +68,15 @@ Pose pose_of(const LookDocument& document, const std::map<std::string, Place>& p
 }
 
 /// A primitive as a node shows it, once for each of `matrices` unless a skin places it.
-void add_mesh(const Mesh& mesh, const Json* weights, const Pose& pose, const std::vector<Transform>& matrices,
-              const WideTransform& world, WideBox& bounds) {
+void place_mesh(const std::string& node, const Mesh& mesh, const Json* weights, const Pose& pose,
+                const std::vector<Transform>& matrices, const WideTransform& world, const PlacedMeshVisit& visit) {
   const SharedDeformation deformation = deformation_of(mesh, weights, pose);
   const bool is_skinned = deformation && !(*deformation).joints.empty();
   if (is_skinned && mesh.joint_count() > pose.joints.size()) return;
-  const Box box = deformation ? deformed(mesh, *deformation).bounds : mesh.bounds;
-  if (is_skinned) return add_corners(box, WideTransform().setTranslation(pose.place), bounds);
-  for (const Transform& matrix : matrices) add_corners(box, widened(matrix) * world, bounds);
+  const Mesh shaped = deformation ? deformed(mesh, *deformation) : Mesh();
+  const Mesh& shown = deformation ? shaped : mesh;
+  if (is_skinned) return visit(node, shown, WideTransform().setTranslation(pose.place));
+  for (const Transform& matrix : matrices) visit(node, shown, widened(matrix) * world);
 }
 
 }  // namespace
@@ -94,8 +85,7 @@ WideTransform unscaled_transform(const LookDocument& document, const std::string
   return places_of(document, node).at(node).world;
 }
 
-WideBox world_bounds(const LookDocument& document) {
-  WideBox bounds;
+void for_each_placed_mesh(const LookDocument& document, const PlacedMeshVisit& visit) {
   const std::map<std::string, Place> places = places_of(document);
   for (const auto& [name, place] : places) {
     const Json& node = document.look.at("nodes").at(name);
@@ -109,8 +99,27 @@ WideBox world_bounds(const LookDocument& document) {
     const std::vector<Transform>& matrices =
         instances == nullptr ? alone : document.instances.at(instances->get<std::string>());
     for (MeshId id : document.assets->mesh_primitives.find(geometry->get<std::string>())->second)
-      add_mesh(document.assets->meshes[id.index()], weights_of(node, mesh), pose, matrices, place.world, bounds);
+      place_mesh(name, document.assets->meshes[id.index()], weights_of(node, mesh), pose, matrices, place.world, visit);
   }
+}
+
+void for_each_place(const LookDocument& document,
+                    const std::function<void(const std::string&, const Json&, const WideTransform&)>& visit) {
+  for (const auto& [name, place] : places_of(document))
+    if (place.visible) visit(name, document.look.at("nodes").at(name), place.world);
+}
+
+WideBox world_bounds(const LookDocument& document) {
+  WideBox bounds;
+  for_each_placed_mesh(document, [&](const std::string&, const Mesh& mesh, const WideTransform& world) {
+    if (mesh.bounds.isEmpty()) return;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      const Imath::V3d local(static_cast<double>((corner & 1U) != 0 ? mesh.bounds.max.x : mesh.bounds.min.x),
+                             static_cast<double>((corner & 2U) != 0 ? mesh.bounds.max.y : mesh.bounds.min.y),
+                             static_cast<double>((corner & 4U) != 0 ? mesh.bounds.max.z : mesh.bounds.min.z));
+      bounds.extendBy(local * world);
+    }
+  });
   return bounds;
 }
 

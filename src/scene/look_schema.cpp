@@ -1,4 +1,5 @@
-// The tables of look_schema.h: glTF 2.0 and its extensions as far as relook supports them, and extras.relook.
+// The tables of look_schema.h: glTF 2.0 and its extensions as far as relook supports them, and extras.relook. Bounds of
+// what glTF defines are glTF's.
 #include "scene/look_schema.h"
 
 #include <utility>
@@ -6,14 +7,20 @@
 namespace relook {
 namespace {
 
-constexpr double kMost = 1e6;  // coordinates, scales, colours
-constexpr double kMostIntensity = 1e9;
+constexpr double kMost = 1e6;         // of what is relook's own
+constexpr double kLargest = kCeiling;
+constexpr double kHuge = kUnbounded;  // where a float's infinity does no harm
+constexpr double kRightAngle = 1.5707963267948966;
+constexpr double kBelowPi = 3.1415926;
 
 Field number(std::string_view key, Json fallback, double low, double high) {
   return {.key = key, .kind = FieldKind::number, .fallback = std::move(fallback), .low = low, .high = high};
 }
 Field integer(std::string_view key, Json fallback, double low, double high) {
   return {.key = key, .kind = FieldKind::integer, .fallback = std::move(fallback), .low = low, .high = high};
+}
+Field code(std::string_view key, Json fallback, std::vector<int> codes) {
+  return {.key = key, .kind = FieldKind::integer, .fallback = std::move(fallback), .codes = std::move(codes)};
 }
 Field boolean(std::string_view key, bool fallback) {
   return {.key = key, .kind = FieldKind::boolean, .fallback = fallback};
@@ -52,6 +59,10 @@ Field unwritten(Field field) {
   field.unwritten = true;
   return field;
 }
+Field or_zero(Field field) {
+  field.zero_too = true;
+  return field;
+}
 Field list(std::string_view key, const Schema& inner) {
   return {.key = key, .kind = FieldKind::list, .fallback = {}, .inner = &inner};
 }
@@ -71,8 +82,9 @@ Field texture_coordinates() { return integer("texCoord", 0, 0, 1); }
 
 /// KHR_texture_transform of a textureInfo or a displacement map.
 Field texture_transform() {
-  static const Schema transform{{reals("offset", {0.0, 0.0}, -kMost, kMost), number("rotation", 0.0, -kMost, kMost),
-                                 reals("scale", {1.0, 1.0}, -kMost, kMost), integer("texCoord", {}, 0, 1)}};
+  static const Schema transform{
+      {reals("offset", {0.0, 0.0}, -kLargest, kLargest), number("rotation", 0.0, -kLargest, kLargest),
+       reals("scale", {1.0, 1.0}, -kLargest, kLargest), integer("texCoord", {}, 0, 1)}};
   static const Schema extensions = wrapped("KHR_texture_transform", transform);
   return implied("extensions", extensions);
 }
@@ -92,19 +104,19 @@ const Schema& plain_texture() {
   return info;
 }
 const Schema& normal_texture() {
-  static const Schema info = texture_info({number("scale", 1.0, -kMost, kMost)});
+  static const Schema info = texture_info({number("scale", 1.0, -kLargest, kLargest)});
   return info;
 }
 
 const Schema& material_extensions() {
-  static const Schema ior{{number("ior", 1.5, 0, 10)}};
+  static const Schema ior{{or_zero(number("ior", 1.5, 1, kLargest))}};
   static const Schema transmission{
       {number("transmissionFactor", 0.0, 0, 1), optional("transmissionTexture", plain_texture())}};
-  static const Schema volume{{number("thicknessFactor", 0.0, 0, kMost), optional("thicknessTexture", plain_texture()),
-                              unwritten(number("attenuationDistance", {}, kAboveZero, 1e30)),
+  static const Schema volume{{number("thicknessFactor", 0.0, 0, kLargest), optional("thicknessTexture", plain_texture()),
+                              unwritten(number("attenuationDistance", {}, kAboveZero, kHuge)),
                               reals("attenuationColor", {1.0, 1.0, 1.0}, 0, 1)}};
   static const Schema specular{{number("specularFactor", 1.0, 0, 1), optional("specularTexture", plain_texture()),
-                                reals("specularColorFactor", {1.0, 1.0, 1.0}, 0, kMost),
+                                reals("specularColorFactor", {1.0, 1.0, 1.0}, 0, kLargest),
                                 optional("specularColorTexture", plain_texture())}};
   static const Schema clearcoat{{number("clearcoatFactor", 0.0, 0, 1), optional("clearcoatTexture", plain_texture()),
                                  number("clearcoatRoughnessFactor", 0.0, 0, 1),
@@ -113,7 +125,7 @@ const Schema& material_extensions() {
   static const Schema sheen{{reals("sheenColorFactor", {0.0, 0.0, 0.0}, 0, 1),
                              optional("sheenColorTexture", plain_texture()), number("sheenRoughnessFactor", 0.0, 0, 1),
                              optional("sheenRoughnessTexture", plain_texture())}};
-  static const Schema emissive_strength{{number("emissiveStrength", 1.0, 0, kMostIntensity)}};
+  static const Schema emissive_strength{{number("emissiveStrength", 1.0, 0, kLargest)}};
   static const Schema unlit{};
   static const Schema extensions{
       {implied("KHR_materials_ior", ior), implied("KHR_materials_transmission", transmission),
@@ -139,7 +151,7 @@ const Schema& material_schema() {
       {text("name"), implied("pbrMetallicRoughness", metallic_roughness), optional("normalTexture", normal_texture()),
        optional("occlusionTexture", occlusion), optional("emissiveTexture", plain_texture()),
        reals("emissiveFactor", {0.0, 0.0, 0.0}, 0, 1), choice("alphaMode", "OPAQUE", {"OPAQUE", "MASK", "BLEND"}),
-       number("alphaCutoff", 0.5, 0, kMost), boolean("doubleSided", false),
+       number("alphaCutoff", 0.5, 0, kHuge), boolean("doubleSided", false),
        implied("extensions", material_extensions()), implied("extras", extras)}};
   return material;
 }
@@ -164,9 +176,10 @@ const Schema& image_schema() {
 }
 
 const Schema& sampler_schema() {
-  static const Schema sampler{{text("name"), integer("magFilter", 9729, 9728, 9729),
-                               integer("minFilter", {}, 9728, 9987), integer("wrapS", 10497, 10497, 33648),
-                               integer("wrapT", 10497, 10497, 33648)}};
+  static const std::vector<int> wraps{10497, 33071, 33648};  // repeat, clamp, mirror
+  static const Schema sampler{{text("name"), code("magFilter", 9729, {9728, 9729}),
+                               code("minFilter", {}, {9728, 9729, 9984, 9985, 9986, 9987}),
+                               code("wrapS", 10497, wraps), code("wrapT", 10497, wraps)}};
   return sampler;
 }
 
@@ -180,16 +193,16 @@ const Schema& mesh_schema() {
   static const Schema relook{{text("geometry")}};
   static const Schema extras = wrapped("relook", relook);
   static const Schema mesh{
-      {text("name"), list("primitives", primitive), numbers("weights", -kMost, kMost), implied("extras", extras)}};
+      {text("name"), list("primitives", primitive), numbers("weights", -kLargest, kLargest), implied("extras", extras)}};
   return mesh;
 }
 
 const Schema& light_schema() {
-  static const Schema spot{{number("innerConeAngle", 0.0, 0, 1.5707963267948966),
-                            number("outerConeAngle", 0.7853981633974483, 0, 1.5707963267948966)}};
+  static const Schema spot{{number("innerConeAngle", 0.0, 0, kRightAngle),
+                            number("outerConeAngle", 0.7853981633974483, 0, kRightAngle)}};
   static const Schema light{{text("name"), choice("type", {}, {"point", "spot", "directional"}, true),
-                             reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kMostIntensity),
-                             unwritten(number("range", {}, kAboveZero, 1e30)), optional("spot", spot)}};
+                             reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kLargest),
+                             unwritten(number("range", {}, kAboveZero, kHuge)), optional("spot", spot)}};
   return light;
 }
 
@@ -207,12 +220,13 @@ const Schema& node_schema() {
     Field children = names("children", Target::nodes);
     children.fallback = Json::array();
     Schema schema{
-        {text("name"), name("mesh", Target::meshes), name("skin", Target::skins), numbers("weights", -kMost, kMost),
+        {text("name"), name("mesh", Target::meshes), name("skin", Target::skins), numbers("weights", -kLargest, kLargest),
          children, name("camera", Target::cameras), implied("extensions", extensions), optional("extras", extras),
-         reals("translation", {0.0, 0.0, 0.0}, -kMost, kMost), reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kMost, kMost),
-         reals("scale", {1.0, 1.0, 1.0}, -kMost, kMost)}};
+         reals("translation", {0.0, 0.0, 0.0}, -kHuge, kHuge),
+         reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kHuge, kHuge),
+         reals("scale", {1.0, 1.0, 1.0}, -kHuge, kHuge)}};
     schema.fields.push_back(
-        {.key = "matrix", .kind = FieldKind::reals, .fallback = {}, .low = -kMost, .high = kMost, .count = 16});
+        {.key = "matrix", .kind = FieldKind::reals, .fallback = {}, .low = -kHuge, .high = kHuge, .count = 16});
     return schema;
   }();
   return node;
@@ -251,7 +265,7 @@ const Schema& schema_of(Section section) {
 
 const Schema& scene_schema() {
   static const Schema environment{{reals("color", {0.0, 0.0, 0.0}, 0, kMost),
-                                   number("intensity", 1.0, 0, kMostIntensity), number("rotation", 0.0, -kMost, kMost),
+                                   number("intensity", 1.0, 0, kLargest), number("rotation", 0.0, -kMost, kMost),
                                    name("image", Target::images)}};
   static const Schema relook{{reals("ambient", {0.0, 0.0, 0.0}, 0, kMost), implied("environment", environment)}};
   static const Schema extras = wrapped("relook", relook);
@@ -263,6 +277,16 @@ const Schema& extensions_schema() {
   static const Schema variants{{{.key = "variants", .kind = FieldKind::texts, .fallback = {}}}};
   static const Schema extensions = wrapped("KHR_materials_variants", variants, false);
   return extensions;
+}
+
+const Schema& camera_schema() {
+  static const Schema perspective{{number("yfov", {}, kAboveZero, kBelowPi), number("aspectRatio", {}, kAboveZero, kLargest),
+                                   number("znear", {}, kAboveZero, kHuge), number("zfar", {}, kAboveZero, kHuge)}};
+  static const Schema orthographic{{number("xmag", {}, -kLargest, kLargest), number("ymag", {}, -kLargest, kLargest),
+                                    number("znear", {}, 0, kHuge), number("zfar", {}, kAboveZero, kHuge)}};
+  static const Schema camera{{text("name"), choice("type", {}, {"perspective", "orthographic"}, true),
+                              optional("perspective", perspective), optional("orthographic", orthographic)}};
+  return camera;
 }
 
 }  // namespace relook

@@ -3,6 +3,7 @@
 // value, and visiting the names it refers to. glTF 2.0 section 5 and the KHR_* extensions; extras.relook.
 #pragma once
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -38,6 +39,8 @@ struct Field {
   FieldKind kind = FieldKind::number;
   Json fallback = {};                          // null: absent until set
   double low = 0, high = 0;                    // number, integer, reals
+  bool zero_too = false;                       // number: 0 is allowed, too, though it is below `low`
+  std::vector<int> codes = {};                 // integer: one of these; empty: any from low to high
   std::size_t count = 0;                       // reals; 0: any number of them
   const Schema* inner = nullptr;               // object, list
   Target target = Target::materials;           // name, names
@@ -55,9 +58,19 @@ struct Schema {
 [[nodiscard]] const Schema& schema_of(Section section);
 [[nodiscard]] const Schema& scene_schema();       // /scene
 [[nodiscard]] const Schema& extensions_schema();  // /extensions
+[[nodiscard]] const Schema& camera_schema();      // an entry of glTF's cameras
 
 /// A number field with this lower bound must be above zero.
 inline constexpr double kAboveZero = 1e-30;
+/// The bounds of numbers for which glTF has none: what a float holds, or where products of a few must stay finite.
+inline constexpr double kUnbounded = 3.4028234663852886e38;
+inline constexpr double kCeiling = 1e12;
+
+/// The number that `x` stands for in a number or reals field: itself where it is allowed; the bound where only rounding
+/// (1e-6 of it, or of 1) puts `x` beyond, or where the bound is not glTF's but one of the two above; none otherwise.
+[[nodiscard]] std::optional<double> fitted(const Field& field, double x);
+/// "1.5 is above 1"; requires an `x` that the field does not allow.
+[[nodiscard]] std::string range_fault(const Field& field, const Json& x);
 
 /// Removes, at every level, the keys that the schema does not know. Values of a wrong type stay.
 void cut_to_schema(const Schema& schema, Json& value);

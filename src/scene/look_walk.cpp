@@ -18,6 +18,17 @@ const Field* find_field(const Schema& schema, std::string_view key) {
   return nullptr;
 }
 
+bool is_allowed(const Field& field, double x) {
+  if (!field.codes.empty()) return std::ranges::find(field.codes, x) != field.codes.end();
+  return (x >= field.low && x <= field.high) || (field.zero_too && x == 0);
+}
+
+/// A limit as the number a person would write: 1, not 1.0.
+Json short_limit(double x) {
+  if (std::floor(x) == x && std::abs(x) < 1e15) return static_cast<std::int64_t>(x);
+  return x;
+}
+
 std::string short_number(const Json& value) {
   const std::string text = value.dump();
   return text.size() > 24 ? text.substr(0, 24) + "..." : text;
@@ -151,17 +162,7 @@ class Checker {
 
   void number(const Field& field, const Json& value, const Place& place) const {
     if (!value.is_number()) fail(place, "expected a number, got " + std::string(type_noun(value)));
-    const double x = value.get<double>();
-    if (!std::isfinite(x)) fail(place, "expected a finite number");
-    if (x < field.low && field.low == kAboveZero) fail(place, short_number(value) + " is not above 0");
-    if (x < field.low) fail(place, short_number(value) + " is below " + short_number(limit(field.low)));
-    if (x > field.high) fail(place, short_number(value) + " is above " + short_number(limit(field.high)));
-  }
-
-  /// A limit as the number a person would write: 1, not 1.0.
-  static Json limit(double x) {
-    if (std::floor(x) == x && std::abs(x) < 1e15) return static_cast<std::int64_t>(x);
-    return x;
+    if (!is_allowed(field, value.get<double>())) fail(place, range_fault(field, value));
   }
 
   void reals(const Field& field, const Json& value, const Place& place) const {
@@ -219,6 +220,32 @@ const Json* names_of(const LookDocument& document, Target target) {
 }
 
 }  // namespace
+
+std::optional<double> fitted(const Field& field, double x) {
+  if (is_allowed(field, x)) return x;
+  if (!std::isfinite(x) || !field.codes.empty()) return {};
+  const bool is_above = x > field.high;
+  if (!is_above && field.low == kAboveZero) return x > 0 ? std::optional(kAboveZero) : std::nullopt;
+  const double bound = is_above ? field.high : field.low;
+  constexpr double kRounding = 1e-6;
+  const bool is_of_gltf = std::abs(bound) < kCeiling;
+  if (is_of_gltf && std::abs(x - bound) > kRounding * std::max(1.0, std::abs(bound))) return {};
+  return bound;
+}
+
+std::string range_fault(const Field& field, const Json& number) {
+  const auto x = number.get<double>();
+  if (!std::isfinite(x)) return "expected a finite number";
+  std::string fault = short_number(number);
+  if (!field.codes.empty()) {
+    fault += " is not one of";
+    for (const int code : field.codes) fault += (code == field.codes.front() ? " " : ", ") + std::to_string(code);
+    return fault;
+  }
+  if (x > field.high) return fault + " is above " + short_number(short_limit(field.high));
+  if (field.low == kAboveZero) return fault + " is not above 0";
+  return fault + " is below " + short_number(short_limit(field.low)) + (field.zero_too ? " and not 0" : "");
+}
 
 std::string_view target_noun(Target target) { return kNouns[static_cast<std::size_t>(target)]; }
 

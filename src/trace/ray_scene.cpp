@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "scene/compile_transform.h"
 #include "scene/deformation.h"
 #include "scene/displacement.h"
 #include "trace/rounding.h"
@@ -52,11 +53,22 @@ Point largest_in(const Box& bounds) {
   return largest;
 }
 
-/// Requires a deformation or a displacement.
-Mesh shaped(const Mesh& mesh, const Object& object) {
-  if (!object.deformation) return displaced(mesh, *object.displacement);
-  Mesh result = deformed(mesh, *object.deformation);
-  return object.displacement ? displaced(result, *object.displacement) : result;
+/// A mesh without extent along one direction. Normals then follow from the triangles: across the sheet.
+void flatten(Mesh& mesh, const Transform& along) {
+  mesh.normals.clear(), mesh.tangents.clear(), mesh.targets.clear(), mesh.joints.clear(), mesh.joint_weights.clear();
+  mesh.bounds.makeEmpty();
+  for (Point& position : mesh.positions) {
+    position = position * along;
+    mesh.bounds.extendBy(position);
+  }
+}
+
+/// Deformed, then displaced, then flattened.
+Mesh shaped(const Mesh& mesh, const Object& object, const Transform* sheet) {
+  Mesh result = object.deformation ? deformed(mesh, *object.deformation) : mesh;
+  if (object.displacement) result = displaced(result, *object.displacement);
+  if (sheet != nullptr) flatten(result, *sheet);
+  return result;
 }
 
 }  // namespace
@@ -104,17 +116,19 @@ void RayScene::list_user(ObjectId object, MaterialId material) {
 
 RayObject RayScene::make_object(const Scene& scene, const Object& object, const Material& material) const {
   RayObject ray_object;
-  ray_object.mesh = mesh_of(scene, object);
+  const bool is_sheet = object.alive && dimensions_of(object.to_world) == 2;
+  const SheetTransform sheet = is_sheet ? sheet_transform(object.to_world) : SheetTransform{{}, object.to_world};
+  ray_object.mesh = mesh_of(scene, object, is_sheet ? std::optional(sheet.flatten) : std::nullopt);
   const std::size_t m = object.material.index();
   set_material(ray_object, m < materials_.size() && materials_[m] && *materials_[m] == material
                                ? materials_[m]
                                : std::make_shared<const Material>(material));
-  ray_object.to_world = object.to_world;
-  ray_object.normal_to_world = normal_matrix(object.to_world);
-  const float det = determinant(object.to_world, ray_object.normal_to_world);
-  ray_object.offset = rounding_offset(object.to_world, largest_in(ray_object.mesh->bounds));
+  ray_object.to_world = sheet.to_world;
+  ray_object.normal_to_world = normal_matrix(sheet.to_world);
+  const float det = determinant(sheet.to_world, ray_object.normal_to_world);
+  ray_object.offset = rounding_offset(sheet.to_world, largest_in(ray_object.mesh->bounds));
   ray_object.flipped = det < 0;
-  ray_object.condition = condition_number(object.to_world, ray_object.normal_to_world, det);
+  ray_object.condition = condition_number(sheet.to_world, ray_object.normal_to_world, det);
   ray_object.alive = object.alive;
   ray_object.key = tie_key(object, ray_object.mesh->bounds);
   return ray_object;
@@ -145,16 +159,17 @@ std::shared_ptr<const CornerTangents> RayScene::tangents_of(const std::shared_pt
   return result;
 }
 
-std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object) const {
+std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object,
+                                                const std::optional<Transform>& sheet) const {
   const Mesh& mesh = scene.mesh(object.mesh);
-  if ((!object.deformation && !object.displacement) || !object.alive) return {scene.assets, &mesh};
+  if ((!object.deformation && !object.displacement && !sheet) || !object.alive) return {scene.assets, &mesh};
   std::vector<Shaped>& of_mesh = shaped_[object.mesh];
   std::erase_if(of_mesh, [](const Shaped& known) { return known.result.expired(); });
   for (const Shaped& known : of_mesh)
-    if (known.deformation == object.deformation && known.displacement == object.displacement)
+    if (known.deformation == object.deformation && known.displacement == object.displacement && known.sheet == sheet)
       if (auto result = known.result.lock()) return result;
-  auto result = std::make_shared<const Mesh>(shaped(mesh, object));
-  of_mesh.push_back({object.deformation, object.displacement, result});
+  auto result = std::make_shared<const Mesh>(shaped(mesh, object, sheet ? &*sheet : nullptr));
+  of_mesh.push_back({object.deformation, object.displacement, sheet, result});
   return result;
 }
 

@@ -48,7 +48,8 @@ class RayScene {
 
  private:
   void list_user(ObjectId object, MaterialId material);
-  [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object) const;
+  [[nodiscard]] std::shared_ptr<const Mesh> mesh_of(const Scene& scene, const Object& object,
+                                                    const std::optional<Transform>& sheet) const;
   void set_material(RayObject& object, std::shared_ptr<const Material> material) const;
   [[nodiscard]] std::shared_ptr<const CornerTangents> tangents_of(const std::shared_ptr<const Mesh>& mesh,
                                                                   std::uint8_t texcoord) const;
@@ -57,6 +58,7 @@ class RayScene {
   struct Shaped {
     SharedDeformation deformation;
     std::optional<Displacement> displacement;
+    std::optional<Transform> sheet;  // flattened by it
     std::weak_ptr<const Mesh> result;
   };
 

@@ -31,7 +31,7 @@ void use(const std::filesystem::path& file) {
   constexpr std::uint32_t kPixels = 4;
   LookDocument document = make_look_document(import_gltf(file));
   const Camera camera = choose_camera(document, document.cameras.empty() ? "auto" : "", kPixels, kPixels);
-  add_auto_lights(document, camera);
+  (void)add_auto_lights(document, camera);
   const SceneState state(std::move(document), camera, std::make_shared<PyramidStore>());
   const std::initializer_list<ExitCode> codes{ExitCode::bad_input};
   is_answered(codes, [&] { (void)journal_text(draft_variants(state.document())); });

@@ -1,0 +1,77 @@
+#include "scene/look_warnings.h"
+
+#include <set>
+
+#include "scene/compile_material.h"
+#include "scene/look_bounds.h"
+#include "scene/look_schema.h"
+
+namespace relook {
+namespace {
+
+constexpr std::size_t kMostOfAKind = 20;
+
+/// Sentences of one kind; beyond a few only their number.
+class Kind {
+ public:
+  explicit Kind(std::vector<std::string>& warnings) : warnings_(warnings) {}
+  Kind(const Kind&) = delete;
+  Kind& operator=(const Kind&) = delete;
+  ~Kind() {
+    if (count_ > kMostOfAKind) warnings_.push_back("and " + std::to_string(count_ - kMostOfAKind) + " more like that");
+  }
+  void add(std::string sentence) {
+    if (++count_ <= kMostOfAKind) warnings_.push_back(std::move(sentence));
+  }
+
+ private:
+  std::vector<std::string>& warnings_;
+  std::size_t count_ = 0;
+};
+
+void warn_of_places(const LookDocument& document, std::vector<std::string>& warnings) {
+  Kind objects(warnings), lights(warnings);
+  std::set<std::string> said;
+  for_each_placed_mesh(document, [&](const std::string& node, const Mesh&, const WideTransform& world) {
+    if (!is_in_range(world) || dimensions_of(rounded(world, WidePoint(0, 0, 0))) >= 2) return;
+    if (said.insert(node).second) objects.add("node \"" + node + "\" is scaled to nothing: its mesh is not drawn");
+  });
+  for_each_place(document, [&](const std::string& name, const Json& node, const WideTransform& world) {
+    const Json* light = member_at(node, {"extensions", "KHR_lights_punctual", "light"});
+    if (light == nullptr) return;
+    const Json& type = document.look.at("lights").at(light->get<std::string>()).at("type");
+    if (type == "point" || Imath::V3d(world[2][0], world[2][1], world[2][2]).length() > 1e-12) return;
+    lights.add("node \"" + name + "\" is scaled to nothing: its light has no direction and gives no light");
+  });
+}
+
+/// The textures that slots below a value name.
+void visit_textures(const Schema& schema, const Json& value, const std::function<void(const std::string&)>& visit) {
+  visit_names(schema, value, [&](Target target, const Json& name) {
+    if (target == Target::textures && name.is_string()) visit(name.get_ref<const std::string&>());
+  });
+}
+
+void warn_of_textures(const LookDocument& document, std::vector<std::string>& warnings) {
+  Kind kind(warnings);
+  const Json& textures = document.look.at("textures");
+  for (const auto& material : document.look.at("materials").items())
+    visit_textures(schema_of(Section::materials), material.value(), [&](const std::string& name) {
+      const auto texture = textures.find(name);
+      if (texture == textures.end() || texture->contains("source")) return;
+      if (member_at(*texture, {"extras", "relook", "procedural"}) != nullptr) return;
+      kind.add("texture \"" + name + "\" has no image that is read: material \"" + material.key() +
+               "\" is drawn without it");
+    });
+}
+
+}  // namespace
+
+std::vector<std::string> look_warnings(const LookDocument& document) {
+  std::vector<std::string> warnings;
+  warn_of_places(document, warnings);
+  warn_of_textures(document, warnings);
+  return warnings;
+}
+
+}  // namespace relook
