@@ -136,6 +136,8 @@ std::vector<Row> geometric_rows() {
   const Json lamp = {{"translation", {-2, 3, 2}}, {"extensions", {{"KHR_lights_punctual", {{"light", "Lamp"}}}}}};
   return {
       row("transform an object", set("/nodes/Ball/translation", {0.4, 0.8, 0.2})),
+      row("flatten it to a sheet", set("/nodes/Ball/scale", {0.9, 1.1, 0})),
+      row("to nothing", set("/nodes/Ball/scale", {0, 1, 0})),
       row("rotate and scale it", set("/nodes/Ball/rotation", {0, 0.3, 0.2, 0.9}),
           set("/nodes/Ball/scale", {0.8, 1.2, -0.9})),
       row("transform a mirror", set("/nodes/MirrorBall/translation", {-1.2, 1, 0.6})),

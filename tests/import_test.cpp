@@ -199,43 +199,42 @@ const std::vector<Damage> kDamages = {
     {"/scene", 1, "/scene: there is no scene 1; the file has 1"},
     {"/scene", 0.5, "/scene: must be an integer"},
     {"/scenes/0/nodes/0", 9, "/scenes/0/nodes/0: there is no node 9; the file has 3"},
-    {"/scenes/0/nodes/0", 1, "/scenes/0/nodes/0: node 1 is no root"},
     {"/nodes/0/mesh", -1, "/nodes/0/mesh: there is no mesh -1"},
     {"/nodes/0/children", {1, 1}, "/nodes/0/children/1: node 1 has more than one parent"},
     {"/nodes/1/children", {0}, "/nodes/0: is its own ancestor"},
     {"/nodes/1/camera", 3, "/nodes/1/camera: there is no camera 3"},
-    {"/nodes/1/translation", {0, 0}, "/nodes/1/translation: must have 3 numbers"},
-    {"/nodes/1/translation", {0, 0, 1e7}, "/nodes/1/translation/2: 10000000 is out of range"},
+    {"/nodes/1/translation", {0, 0}, "/nodes/1/translation: expected an array of 3 numbers, got 2"},
+    {"/nodes/1/translation", {0, 0, "x"}, "/nodes/1/translation/2: expected a number, got a string"},
     {"/nodes/1/rotation", {0, 0, 0, 0}, "/nodes/1/rotation: the quaternion is zero"},
     {"/nodes/1/matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "/nodes/1/matrix: a node has either"},
     {"/nodes/0/matrix", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, "/nodes/0/matrix: the matrix is not affine"},
-    {"/nodes/0/matrix", {1, 0, 0, "x"}, "/nodes/0/matrix: must have 16 numbers"},
+    {"/nodes/0/matrix", {1, 0, 0, "x"}, "/nodes/0/matrix: expected an array of 16 numbers, got 4"},
     {"/nodes/2/extensions/KHR_lights_punctual/light", 1,
      "/nodes/2/extensions/KHR_lights_punctual/light: there is no light 1"},
     {"/nodes/0/extensions/KHR_node_visibility/visible", 1,
-     "/nodes/0/extensions/KHR_node_visibility/visible: must be true or false"},
+     "/nodes/0/extensions/KHR_node_visibility/visible: expected true or false, got a number"},
     {"/nodes/0/name", 5, "/nodes/0/name: must be a string"},
     {"/nodes/0", 5, "/nodes/0: must be an object"},
-    {"/cameras/0/perspective/znear", 0, "/cameras/0/perspective/znear: must be greater than 0"},
+    {"/cameras/0/perspective/znear", 0, "/cameras/0/perspective/znear: 0 is not above 0"},
     {"/cameras/0/type", "fisheye", "/cameras/0/type: \"fisheye\" is not one of"},
     {"/materials/0/pbrMetallicRoughness/metallicFactor", 1.5,
-     "/materials/0/pbrMetallicRoughness/metallicFactor: 1.5 is out of range"},
+     "/materials/0/pbrMetallicRoughness/metallicFactor: 1.5 is above 1"},
     {"/materials/0/pbrMetallicRoughness/baseColorTexture/index", 1,
      "/materials/0/pbrMetallicRoughness/baseColorTexture/index: there is no texture 1"},
     {"/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord", 2,
-     "/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord: texture coordinate set 2"},
+     "/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord: 2 is above 1"},
     {"/materials/0/extensions/KHR_materials_ior/ior", 0.5,
-     "/materials/0/extensions/KHR_materials_ior/ior: must be 0 or from 1 to 10"},
+     "/materials/0/extensions/KHR_materials_ior/ior: 0.5 is below 1 and not 0"},
     {"/materials/0/extensions/KHR_materials_volume/attenuationDistance", 0,
-     "/materials/0/extensions/KHR_materials_volume/attenuationDistance: must be greater"},
+     "/materials/0/extensions/KHR_materials_volume/attenuationDistance: 0 is not above 0"},
     {"/materials/0/alphaMode", "blend", "/materials/0/alphaMode: \"blend\" is not one of"},
     {"/textures/0/source", 0, "/textures/0/source: there is no image 0"},
-    {"/samplers/0/wrapS", 1, "/samplers/0/wrapS: 1 is not a value that glTF defines"},
+    {"/samplers/0/wrapS", 1, "/samplers/0/wrapS: 1 is not one of 10497, 33071, 33648"},
     {"/extensions/KHR_lights_punctual/lights/0/spot/innerConeAngle", 1.2,
      "/extensions/KHR_lights_punctual/lights/0/spot: outerConeAngle must be greater"},
     {"/extensions/KHR_lights_punctual/lights/0/color",
      {1, -1, 1},
-     "/extensions/KHR_lights_punctual/lights/0/color/1: -1 is out of range"},
+     "/extensions/KHR_lights_punctual/lights/0/color/1: -1 is below 0"},
     {"/meshes/0/primitives/0/indices", 2, "/meshes/0/primitives/0/indices: there is no accessor 2"},
     {"/meshes/0/primitives/0/mode", 7, "/meshes/0/primitives/0/mode: 7 is out of range"},
     {"/meshes/0/primitives/0/material", 1, "/meshes/0/primitives/0/material: there is no material 1"},
@@ -257,7 +256,8 @@ const std::vector<Damage> kDamages = {
     {"/bufferViews/0/byteStride", 8, "/accessors/0: elements of 12 bytes do not fit the stride of 8"},
     {"/images", {{{"bufferView", 9}, {"mimeType", "image/png"}}}, "/images/0/bufferView: there is no buffer view 9"},
     {"/images", {{{"uri", "data:image/png;base64,*"}}}, "/images/0/uri: "},
-    {"/images", {{{"uri", "side.png"}}}, "/images/0/uri: a .glb file may not name external files"},
+    {"/images", {{{"uri", "../side.png"}}}, "/images/0/uri: \"../side.png\" leads out of its folder"},
+    {"/images", {{{"uri", "/side.png"}}}, "/images/0/uri: \"/side.png\" is not a relative path"},
 };
 
 TEST_F(Import, wrong_values_are_refused_at_their_place) {
@@ -275,8 +275,7 @@ TEST_F(Import, every_cut_of_a_glb_is_refused) {
   const std::string bytes = square().glb();
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_NE(refusal(std::string_view(bytes).substr(0, length)), "") << length;
-  EXPECT_NE(refusal(bytes + "x"), "");
-  EXPECT_NE(refusal(bytes + std::string(8, '\0')), "");
+  EXPECT_EQ(refusal(bytes + "x"), "") << "what is behind the counted bytes is ignored";
 }
 
 TEST_F(Import, every_flipped_byte_gives_a_scene_or_one_line) {

@@ -150,5 +150,36 @@ TEST(Surfaces, the_frame_of_a_normal_map_turns_and_mirrors_with_the_map) {
   EXPECT_NEAR(light_on({{"scale", {1, -1}}}), 1, 1e-3F);
 }
 
+// As a limit: a body that grows thinner and thinner looks like the sheet that it ends as.
+TEST(Surfaces, what_is_scaled_to_nothing_along_one_axis_is_a_sheet) {
+  const std::vector<Json> scales{{0.7, 0.9, 0.0}, {0.7, 0.0, 0.9}, {0.0, 0.7, 0.9}, {-0.7, 0.9, 0.0}};
+  const Json turn = {0.2705981, 0.3, 0.1, 0.9};
+  for (const Json& scale : scales)
+    for (const bool is_smooth : {false, true}) {
+      SCOPED_TRACE(scale.dump());
+      const auto frame = [&](double least) {
+        Json thick = scale;
+        for (Json& part : thick)
+          if (part == 0.0) part = least;
+        SceneBuilder scene;
+        Mesh mesh = sphere_mesh(0.5F, 12, 8);
+        if (!is_smooth) mesh.normals.clear();
+        const int ball = scene.mesh("Ball", std::move(mesh), scene.material("White", lambert()));
+        scene.node("Ball", {{"mesh", ball}, {"scale", thick}, {"rotation", turn}});
+        scene.light("Lamp", {{"type", "point"}, {"intensity", 60}}, {{"translation", {1, 2, 3}}});
+        scene.look_at(Point(0, 0, 3), Point(0, 0, 0), 40, 16, 16);
+        return rendered(scene.state().scene(), {1, 6}).pixels;
+      };
+      const std::vector<Rgba> sheet = frame(0), thin = frame(1e-6);
+      std::size_t covered = 0;
+      for (std::size_t i = 0; i < sheet.size(); ++i) {
+        covered += sheet[i].a > 0 ? 1 : 0;
+        if (sheet[i].a != thin[i].a) continue;  // the outline's own pixels
+        for (int channel = 0; channel < 4; ++channel) EXPECT_NEAR(sheet[i][channel], thin[i][channel], 1e-3F) << i;
+      }
+      EXPECT_GT(covered, 3U);
+    }
+}
+
 }  // namespace
 }  // namespace relook

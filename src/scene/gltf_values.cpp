@@ -24,81 +24,87 @@ class ValueCheck {
       if (found == value.end()) continue;
       if (field.key == "extras") continue;  // relook's own, or anybody's: look_check reads what is relook's
       const std::string place = pointer + "/" + escape_token(field.key);
-      const std::string fault = member(field, *found, place);
-      if (fault.empty()) continue;
-      if (is_used_) throw InputError(file_, place, fault);
-      tolerate(file_, place, fault + "; the scene does not use it: ignored", warnings_);
+      const std::optional<Fault> fault = member(field, *found, place);
+      if (!fault) continue;
+      if (is_used_) throw InputError(file_, fault->place, fault->what);
+      tolerate(file_, fault->place, fault->what + "; the scene does not use it: ignored", warnings_);
       value.erase(found);
       if (field.required && field.kind == FieldKind::choice) value[std::string(field.key)] = field.choices.front();
     }
   }
 
  private:
+  struct Fault {
+    std::string place, what;
+  };
+  static std::optional<Fault> wrong_type(const std::string& place, std::string_view wanted, const Json& value) {
+    return Fault{place, "expected " + std::string(wanted) + ", got " + std::string(type_noun(value))};
+  }
+
   /// What is wrong with it, if it cannot be put right.
-  std::string member(const Field& field, Json& value, const std::string& place) {
+  std::optional<Fault> member(const Field& field, Json& value, const std::string& place) {
     switch (field.kind) {
       case FieldKind::number:
         return number(field, value, place);
       case FieldKind::integer:
-        return value.is_number_integer() ? number(field, value, place) : wrong_type("an integer", value);
+        if (!value.is_number_integer()) return wrong_type(place, "an integer", value);
+        return number(field, value, place);
       case FieldKind::boolean:
-        return value.is_boolean() ? "" : wrong_type("true or false", value);
+        if (!value.is_boolean()) return wrong_type(place, "true or false", value);
+        break;
       case FieldKind::text:
-        return value.is_string() ? "" : wrong_type("a string", value);
+        if (!value.is_string()) return wrong_type(place, "a string", value);
+        break;
       case FieldKind::choice:
-        return choice(field, value);
+        return choice(field, value, place);
       case FieldKind::reals:
         return reals(field, value, place);
       case FieldKind::object:
-        if (!value.is_object()) return wrong_type("an object", value);
+        if (!value.is_object()) return wrong_type(place, "an object", value);
         object(*field.inner, value, place);
-        return "";
+        break;
       case FieldKind::list:
-        if (!value.is_array()) return wrong_type("an array", value);
+        if (!value.is_array()) return wrong_type(place, "an array", value);
         for (std::size_t i = 0; i < value.size(); ++i)
           if (value[i].is_object()) object(*field.inner, value[i], place + "/" + std::to_string(i));
-        return "";
+        break;
       case FieldKind::texts:
       case FieldKind::name:
       case FieldKind::names:
-        return "";  // references: check_document()
+        break;  // references: check_document()
     }
-    return "";
+    return {};
   }
 
-  static std::string wrong_type(std::string_view wanted, const Json& value) {
-    return "expected " + std::string(wanted) + ", got " + std::string(type_noun(value));
-  }
-
-  std::string number(const Field& field, Json& value, const std::string& place) {
-    if (!value.is_number()) return wrong_type("a number", value);
+  std::optional<Fault> number(const Field& field, Json& value, const std::string& place) {
+    if (!value.is_number()) return wrong_type(place, "a number", value);
     const auto x = value.get<double>();
     const std::optional<double> fit = fitted(field, x);
-    if (!fit) return range_fault(field, value);
-    if (*fit == x) return "";
+    if (!fit) return Fault{place, range_fault(field, value)};
+    if (*fit == x) return {};
     const bool is_harmless = *fit == kAboveZero || std::abs(*fit) == kUnbounded;  // a float holds no other number
     if (!is_harmless) tolerate(file_, place, range_fault(field, value) + ": the bound stands", warnings_);
     value = *fit;
-    return "";
+    return {};
   }
 
-  std::string reals(const Field& field, Json& value, const std::string& place) {
-    if (!value.is_array()) return wrong_type("an array of numbers", value);
+  std::optional<Fault> reals(const Field& field, Json& value, const std::string& place) {
+    if (!value.is_array()) return wrong_type(place, "an array of numbers", value);
     if (field.count != 0 && value.size() != field.count)
-      return "expected an array of " + std::to_string(field.count) + " numbers, got " + std::to_string(value.size());
+      return Fault{place, "expected an array of " + std::to_string(field.count) + " numbers, got " +
+                              std::to_string(value.size())};
     for (std::size_t i = 0; i < value.size(); ++i)
-      if (std::string fault = number(field, value[i], place + "/" + std::to_string(i)); !fault.empty())
-        return "element " + std::to_string(i) + ": " + fault;
-    return "";
+      if (auto fault = number(field, value[i], place + "/" + std::to_string(i))) return fault;
+    return {};
   }
 
-  static std::string choice(const Field& field, const Json& value) {
-    if (!value.is_string()) return wrong_type("a string", value);
+  static std::optional<Fault> choice(const Field& field, const Json& value, const std::string& place) {
+    if (!value.is_string()) return wrong_type(place, "a string", value);
     const auto& word = value.get_ref<const std::string&>();
-    if (std::ranges::find(field.choices, word) != field.choices.end()) return "";
+    if (std::ranges::find(field.choices, word) != field.choices.end()) return {};
     std::string known;
     for (const std::string_view option : field.choices) known += (known.empty() ? "" : ", ") + std::string(option);
-    return "\"" + printable(word) + "\" is not one of " + known;
+    return Fault{place, "\"" + printable(word) + "\" is not one of " + known};
   }
 
   bool is_used_;
