@@ -64,6 +64,15 @@ Wrap wrap_of(const Json& sampler, std::string_view key) {
   }
 }
 
+/// glTF 2.0, 5.26: what a minFilter takes of a level, and which levels. Without one, what we like best.
+void set_filters(const Json& sampler, TextureSampler& filters) {
+  if (sampler.value("magFilter", 9729) == 9728) filters.magnified = TexelFilter::nearest;
+  const int minified = sampler.value("minFilter", 9987);
+  if (minified == 9728 || minified == 9984 || minified == 9986) filters.minified = TexelFilter::nearest;
+  if (minified == 9728 || minified == 9729) filters.levels = LevelFilter::full;
+  if (minified == 9984 || minified == 9985) filters.levels = LevelFilter::nearest;
+}
+
 void set_procedural(const Json& value, TextureSlot& slot) {
   constexpr std::array<std::string_view, 4> kKinds{"marble", "wood", "checker", "noise"};
   slot.kind = TextureKind::procedural;
@@ -99,9 +108,9 @@ void set_texture(const CompileContext& context, const std::string& name, bool is
   }
   if (!texture.contains("sampler") || slot.kind == TextureKind::procedural) return;
   const Json& sampler = context.document.look["samplers"][texture["sampler"].get_ref<const std::string&>()];
-  slot.wrap_s = wrap_of(sampler, "wrapS");
-  slot.wrap_t = wrap_of(sampler, "wrapT");
-  slot.nearest = sampler.value("magFilter", 9729) == 9728;
+  slot.sampler.wrap_s = wrap_of(sampler, "wrapS");
+  slot.sampler.wrap_t = wrap_of(sampler, "wrapT");
+  set_filters(sampler, slot.sampler);
 }
 
 void set_mapping(const Json& mapping, TextureSlot& slot) {
@@ -257,7 +266,7 @@ Light compile_light(std::string_view file, const std::string& name, const Json& 
   if (light.kind != LightKind::spot) return light;
   light.inner_cone = float_of(value["spot"]["innerConeAngle"]);
   light.outer_cone = float_of(value["spot"]["outerConeAngle"]);
-  if (!(light.inner_cone < light.outer_cone))
+  if (light.inner_cone > light.outer_cone)
     throw LookError(file, pointer + "/spot/innerConeAngle", "the inner cone is not inside the outer cone");
   return light;
 }
@@ -274,13 +283,18 @@ Environment compile_environment(const CompileContext& context, const Json& value
 
 void check_texture_entity(const LookDocument& document, std::string_view file, Section section, const Json& value,
                           const std::string& pointer) {
-  if (section == Section::samplers)
+  if (section == Section::samplers) {
     for (const char* key : {"wrapS", "wrapT"}) {
       const int wrap = value.value(key, 10497);
       if (wrap != 10497 && wrap != 33071 && wrap != 33648)
         throw LookError(file, pointer + "/" + key,
                         std::to_string(wrap) + " is not one of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
     }
+    const int minified = value.value("minFilter", 9987);
+    if (minified > 9729 && minified < 9984)
+      throw LookError(file, pointer + "/minFilter",
+                      std::to_string(minified) + " is not one of 9728 (nearest), 9729 (linear), 9984 to 9987 (of levels)");
+  }
   if (section != Section::images) return;
   const std::string& content = value["extras"]["relook"].value("content", "");
   if (!document.assets->images.contains(content))

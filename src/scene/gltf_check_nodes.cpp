@@ -141,7 +141,7 @@ void check_lights(const JsonView& root) {
     const auto inner = member(spot, "innerConeAngle"), outer = member(spot, "outerConeAngle");
     const double inner_angle = inner ? inner->number(0, kRightAngle) : 0.0;
     const double outer_angle = outer ? outer->number(0, kRightAngle) : 0.7853981633974483;
-    if (outer_angle <= inner_angle) spot.fail("outerConeAngle must be greater than innerConeAngle");
+    if (outer_angle < inner_angle) spot.fail("outerConeAngle must be greater than innerConeAngle");
   });
 }
 
