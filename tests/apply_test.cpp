@@ -155,6 +155,8 @@ TEST(PatchErrors, types_and_ranges) {
             "/edit/0/value: the inner cone is not inside the outer cone");
   EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/samplers/0/wrapS", "value": 20000}])"),
             "/edit/0/value: 20000 is not one of 10497 (repeat), 33071 (clamp), 33648 (mirror)");
+  EXPECT_EQ(refusal(R"([{"op": "add", "path": "/samplers/0/minFilter", "value": 9800}])"),
+            "/edit/0/value: 9800 is not one of 9728 (nearest), 9729 (linear), 9984 to 9987 (of levels)");
   EXPECT_EQ(refusal(R"([{"op": "add", "path": "/lights/New", "value": {}}])"), "/edit/0/value: \"type\" is missing");
 }
 

@@ -74,8 +74,11 @@ std::string slot_text(const TextureSlot& slot) {
   const Procedural& p = slot.procedural;
   text += std::to_string(static_cast<int>(p.kind)) + " " + std::to_string(p.octaves) + " " + bits(p.scale) +
           bits(p.turbulence) + bits(p.color1) + bits(p.color2);
-  text += std::to_string(static_cast<int>(slot.wrap_s)) + std::to_string(static_cast<int>(slot.wrap_t)) +
-          std::to_string(slot.nearest ? 1 : 0) + std::to_string(static_cast<int>(slot.mapping)) +
+  text += std::to_string(static_cast<int>(slot.sampler.wrap_s)) +
+          std::to_string(static_cast<int>(slot.sampler.wrap_t)) +
+          std::to_string(static_cast<int>(slot.sampler.magnified)) +
+          std::to_string(static_cast<int>(slot.sampler.minified)) +
+          std::to_string(static_cast<int>(slot.sampler.levels)) + std::to_string(static_cast<int>(slot.mapping)) +
           std::to_string(slot.axis) + std::to_string(slot.texcoord) + " ";
   return text + bits(slot.offset.x) + bits(slot.offset.y) + bits(slot.scale.x) + bits(slot.scale.y) +
          bits(slot.rotation);

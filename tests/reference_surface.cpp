@@ -160,8 +160,7 @@ Imath::V4d ReferenceTracer::texture(const Surface& s, Slot which) const {
   const double uv_area = std::abs((b - a).cross(c - a));
   const double world_area = (s.triangle->b - s.triangle->a).cross(s.triangle->c - s.triangle->a).length();
   const double level = std::log2(s.width / s.incidence) + std::log2(texels * uv_area / world_area) / 2;
-  return values(
-      sample(*slot.pyramid, at, s.with_level ? static_cast<float>(level) : 0, slot.wrap_s, slot.wrap_t, slot.nearest));
+  return values(sample(*slot.pyramid, at, s.with_level ? static_cast<float>(level) : 0, slot.sampler));
 }
 
 Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) const {

@@ -142,7 +142,7 @@ std::vector<ReferenceTracer::Arriving> ReferenceTracer::lamps(const Surface& s) 
     }
     if (light.kind == LightKind::spot) {
       const double outer = std::cos(double{light.outer_cone}), inner = std::cos(double{light.inner_cone});
-      const double t = (Vec(light.direction).dot(-toward) - outer) / std::max(inner - outer, 1e-3);
+      const double t = (Vec(light.direction).dot(-toward) - outer) / (inner - outer);
       irradiance *= std::pow(std::clamp(t, 0.0, 1.0), 2);
     }
     if (s.smooth.dot(toward) <= 0) continue;
@@ -159,7 +159,7 @@ Vec ReferenceTracer::environment(Vec direction) const {
   if (!environment.image) return value;
   const double turned = std::atan2(direction.x, -direction.z) + environment.rotation;
   const Uv uv(static_cast<float>(0.5 + turned / (2 * kPi)), static_cast<float>(std::acos(direction.y) / kPi));
-  const Rgba texel = sample(*environment.image, uv, 0, Wrap::repeat, Wrap::clamp, false);
+  const Rgba texel = sample(*environment.image, uv, 0, {Wrap::repeat, Wrap::clamp});
   return value * Vec(texel.r, texel.g, texel.b);
 }
 

@@ -49,7 +49,7 @@ TEST(Compile, textures_reach_their_slots) {
     const TextureSlot& slot = material.slot(Slot::base_color);
     if (material.name == "Gold") {
       EXPECT_EQ(slot.kind, TextureKind::image);
-      EXPECT_EQ(slot.wrap_s, Wrap::clamp);
+      EXPECT_EQ(slot.sampler.wrap_s, Wrap::clamp);
       EXPECT_EQ(slot.pyramid->texels8[0], 200);
     }
     if (material.name == "Phong") {

@@ -1,6 +1,7 @@
 #include "color/field.h"
 
 #include <cmath>
+#include <limits>
 
 namespace relook {
 namespace {
@@ -138,10 +139,16 @@ float field_value(const Light& light, LightField field) {
       return light.intensity;
     case LightField::inverse_range:
       return std::isinf(light.range) ? 0.0F : 1.0F / light.range;
-    case LightField::cos_inner:
-      return static_cast<float>(std::cos(double{light.inner_cone}));
-    case LightField::cos_outer:
-      return static_cast<float>(std::cos(double{light.outer_cone}));
+    case LightField::outer_versine: {
+      const double half = std::sin(0.5 * double{light.outer_cone});
+      return static_cast<float>(2 * half * half);
+    }
+    case LightField::inverse_cone_width: {
+      const double inner = double{light.inner_cone}, outer = double{light.outer_cone};
+      const double width = 2 * std::sin(0.5 * (outer + inner)) * std::sin(0.5 * (outer - inner));
+      constexpr double kMost = std::numeric_limits<float>::max();
+      return static_cast<float>(width > 1 / kMost ? 1 / width : kMost);
+    }
     case LightField::x:
       return light.position.x;
     case LightField::y:

@@ -69,8 +69,8 @@ enum class LightField : std::uint8_t {
   blue,
   intensity,
   inverse_range,
-  cos_inner,
-  cos_outer,
+  outer_versine,       // 1 - cos of the outer cone angle
+  inverse_cone_width,  // of the difference to that of the inner one; the largest float for a hard edge
   x,
   y,
   z,

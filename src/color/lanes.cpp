@@ -17,7 +17,7 @@ Rgba environment_value(const Environment& environment, const Direction& d) {
   // The image's middle looks along -z; rotation turns the surroundings about +y.
   const float around = portable_atan2_turns(d.x, -d.z) + environment.rotation * 0.15915494F;
   const Uv uv(around + 0.5F, 0.5F - 2.0F * portable_asin_turns(d.y));
-  return sample(*environment.image, uv, 0, Wrap::repeat, Wrap::clamp, false);
+  return sample(*environment.image, uv, 0, {Wrap::repeat, Wrap::clamp});
 }
 
 TextureCoordinates coordinates(const Kernel::Step& step, const Scratch& scratch, std::size_t lane) {

@@ -70,9 +70,11 @@ Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
     const Scalar reach2 = reach * reach;
     Scalar share = max(1.0F - reach2 * reach2, 0.0F) / distance2;
     if (kind == LightKind::spot) {
-      const Scalar cosine = dot(incidence.direction, axis) * -1.0F;
-      const Scalar width = max(of(LightField::cos_inner) - of(LightField::cos_outer), 1e-3F);
-      const Scalar t = min(max((cosine - of(LightField::cos_outer)) / width, 0.0F), 1.0F);
+      // Cosines near 1 have no digits left for narrow cones: 1 - cos is half the square of what lies between directions.
+      const Triple beside = incidence.direction + axis;
+      const Scalar versine = dot(beside, beside) * 0.5F;
+      const Scalar inwards = of(LightField::outer_versine) - versine;
+      const Scalar t = min(max(inwards * of(LightField::inverse_cone_width), 0.0F), 1.0F);
       share = share * (t * t);
     }
     incidence.irradiance = incidence.irradiance * share;

@@ -64,6 +64,15 @@ Wrap wrap_of(const Json& sampler, std::string_view key) {
   }
 }
 
+/// glTF 2.0, 5.26: what a minFilter takes of a level, and which levels. Without one, what we like best.
+void set_filters(const Json& sampler, TextureSampler& filters) {
+  if (sampler.value("magFilter", 9729) == 9728) filters.magnified = TexelFilter::nearest;
+  const int minified = sampler.value("minFilter", 9987);
+  if (minified == 9728 || minified == 9984 || minified == 9986) filters.minified = TexelFilter::nearest;
+  if (minified == 9728 || minified == 9729) filters.levels = LevelFilter::full;
+  if (minified == 9984 || minified == 9985) filters.levels = LevelFilter::nearest;
+}
+
 void set_procedural(const Json& value, TextureSlot& slot) {
   constexpr std::array<std::string_view, 4> kKinds{"marble", "wood", "checker", "noise"};
   slot.kind = TextureKind::procedural;
@@ -99,9 +108,9 @@ void set_texture(const CompileContext& context, const std::string& name, bool is
   }
   if (!texture.contains("sampler") || slot.kind == TextureKind::procedural) return;
   const Json& sampler = context.document.look["samplers"][texture["sampler"].get_ref<const std::string&>()];
-  slot.wrap_s = wrap_of(sampler, "wrapS");
-  slot.wrap_t = wrap_of(sampler, "wrapT");
-  slot.nearest = sampler.value("magFilter", 9729) == 9728;
+  slot.sampler.wrap_s = wrap_of(sampler, "wrapS");
+  slot.sampler.wrap_t = wrap_of(sampler, "wrapT");
+  set_filters(sampler, slot.sampler);
 }
 
 void set_mapping(const Json& mapping, TextureSlot& slot) {

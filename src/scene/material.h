@@ -35,8 +35,7 @@ struct TextureSlot {
   TextureKind kind = TextureKind::none;
   std::shared_ptr<const TexturePyramid> pyramid;  // kind image
   Procedural procedural;                          // kind procedural
-  Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
-  bool nearest = false;                           // sampler.magFilter NEAREST
+  TextureSampler sampler;                         // kind image
   Mapping mapping = Mapping::uv;
   std::uint8_t axis = 1;                          // of planar, spherical, cylindrical: 0 x, 1 y, 2 z
   std::uint8_t texcoord = 0;                      // 0 or 1

@@ -62,16 +62,20 @@ struct Texels {
   }
 };
 
-Rgba bilinear(const Texels& texels, const TexturePyramid::Level& level, Uv uv, Wrap wrap_s, Wrap wrap_t, bool nearest) {
+Rgba nearest_texel(const Texels& texels, const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler) {
   const float x = uv.x * static_cast<float>(level.width), y = uv.y * static_cast<float>(level.height);
-  if (nearest)
-    return texels.at(level, wrapped(static_cast<std::int64_t>(std::floor(x)), level.width, wrap_s),
-                     wrapped(static_cast<std::int64_t>(std::floor(y)), level.height, wrap_t));
-  const float cx = x - 0.5F, cy = y - 0.5F;
+  return texels.at(level, wrapped(static_cast<std::int64_t>(std::floor(x)), level.width, sampler.wrap_s),
+                   wrapped(static_cast<std::int64_t>(std::floor(y)), level.height, sampler.wrap_t));
+}
+
+Rgba bilinear(const Texels& texels, const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler) {
+  const float cx = uv.x * static_cast<float>(level.width) - 0.5F;
+  const float cy = uv.y * static_cast<float>(level.height) - 0.5F;
   const float fx = std::floor(cx), fy = std::floor(cy);
   const auto ix = static_cast<std::int64_t>(fx), iy = static_cast<std::int64_t>(fy);
-  const std::uint32_t x0 = wrapped(ix, level.width, wrap_s), x1 = wrapped(ix + 1, level.width, wrap_s);
-  const std::uint32_t y0 = wrapped(iy, level.height, wrap_t), y1 = wrapped(iy + 1, level.height, wrap_t);
+  const std::uint32_t x0 = wrapped(ix, level.width, sampler.wrap_s), x1 = wrapped(ix + 1, level.width, sampler.wrap_s);
+  const std::uint32_t y0 = wrapped(iy, level.height, sampler.wrap_t);
+  const std::uint32_t y1 = wrapped(iy + 1, level.height, sampler.wrap_t);
   const float u = cx - fx, v = cy - fy;
   const Rgba top = texels.at(level, x0, y0) * (1.0F - u) + texels.at(level, x1, y0) * u;
   const Rgba bottom = texels.at(level, x0, y1) * (1.0F - u) + texels.at(level, x1, y1) * u;
@@ -81,19 +85,30 @@ Rgba bilinear(const Texels& texels, const TexturePyramid::Level& level, Uv uv, W
 /// Beyond this a texel coordinate has no fraction left: such lookups read the corner.
 constexpr float kLargestUv = 1e6F;
 
+/// More than any pyramid has.
+constexpr float kMostLevels = 64;
+
 }  // namespace
 
-Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, Wrap wrap_s, Wrap wrap_t, bool nearest) {
+Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler) {
   if (!(std::fabs(uv.x) < kLargestUv) || !(std::fabs(uv.y) < kLargestUv)) uv = Uv(0, 0);
   const Texels texels(pyramid);
-  const auto last = static_cast<float>(pyramid.levels.size() - 1);
-  if (!(level > 0)) return bilinear(texels, pyramid.levels.front(), uv, wrap_s, wrap_t, nearest);
-  if (level >= last) return bilinear(texels, pyramid.levels.back(), uv, wrap_s, wrap_t, false);
+  const bool is_minified = level > 0;
+  const TexelFilter filter = is_minified ? sampler.minified : sampler.magnified;
+  const auto read = [&](std::size_t index) {
+    const TexturePyramid::Level& from = pyramid.levels[index];
+    return filter == TexelFilter::nearest ? nearest_texel(texels, from, uv, sampler)
+                                          : bilinear(texels, from, uv, sampler);
+  };
+  if (!is_minified || sampler.levels == LevelFilter::full) return read(0);
+  if (sampler.levels == LevelFilter::nearest) level = portable_floor(std::fmin(level, kMostLevels) + 0.5F);
+  if (level >= static_cast<float>(pyramid.levels.size() - 1)) return read(pyramid.levels.size() - 1);
   const float whole = portable_floor(level);
   const auto index = static_cast<std::size_t>(whole);
   const float t = level - whole;
-  const Rgba fine = bilinear(texels, pyramid.levels[index], uv, wrap_s, wrap_t, false);
-  const Rgba coarse = bilinear(texels, pyramid.levels[index + 1], uv, wrap_s, wrap_t, false);
+  if (sampler.levels == LevelFilter::nearest) return read(index);
+  const Rgba fine = read(index);
+  const Rgba coarse = read(index + 1);
   return fine * (1.0F - t) + coarse * t;
 }
 

@@ -1,4 +1,4 @@
-// Mip pyramids and our own trilinear sampler (a library call costs as much as several rays). Texture values are pure
+// Mip pyramids and our own sampler (a library call costs as much as several rays). Texture values are pure
 // functions of (uv, level): the same bits on every machine.
 #pragma once
 #include <cstdint>
@@ -31,9 +31,23 @@ struct TexturePyramid {
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
-/// Trilinear lookup. uv: glTF convention (origin at the upper left texel corner); level: log2 of the footprint in texels
-/// of level 0, clamped to the pyramid; nearest: magnification takes the nearest texel. Non-finite uv reads (0, 0).
-[[nodiscard]] Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, Wrap wrap_s, Wrap wrap_t, bool nearest);
+/// Which texels of a level a lookup takes: the nearest one, or the four around it, mixed.
+enum class TexelFilter : std::uint8_t { nearest, linear };
+/// Which levels a minified lookup takes: the full image alone, the level nearest to the footprint, or two, mixed.
+enum class LevelFilter : std::uint8_t { full, nearest, linear };
+
+/// How a pyramid is read: a glTF sampler. Without filters, trilinearly.
+struct TextureSampler {
+  Wrap wrap_s = Wrap::repeat, wrap_t = Wrap::repeat;
+  TexelFilter magnified = TexelFilter::linear;  // where the footprint is a texel of level 0 or less
+  TexelFilter minified = TexelFilter::linear;   // elsewhere
+  LevelFilter levels = LevelFilter::linear;     // likewise
+  bool operator==(const TextureSampler&) const = default;
+};
+
+/// The value at uv, which counts from the upper left corner of the image (glTF). level: log2 of the footprint in texels
+/// of level 0, clamped to the pyramid. Non-finite uv reads (0, 0).
+[[nodiscard]] Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler);
 
 /// Builds the pyramid from level 0. texels: width * height * 4 values in [0, 255], row 0 on top. Box filter in the linear
 /// domain.

@@ -131,7 +131,7 @@ Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float 
   const float texels = static_cast<float>(base.width) * static_cast<float>(base.height) *
                        std::fabs(slot.scale.x * slot.scale.y) * at.area_ratio;
   const float level = 0.5F * portable_log2(texels * footprint * footprint);
-  return sample(*slot.pyramid, transformed_uv(slot, at.position), level, slot.wrap_s, slot.wrap_t, slot.nearest);
+  return sample(*slot.pyramid, transformed_uv(slot, at.position), level, slot.sampler);
 }
 
 namespace {

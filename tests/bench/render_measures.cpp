@@ -29,7 +29,7 @@ double lookup_nanoseconds(const TextureSlot& slot, float& sum) {
     for (int i = 0; i < kLookups; ++i) {
       random = random * 1664525U + 1013904223U;
       const Uv uv(static_cast<float>(random >> 8) * 0x1p-24F, static_cast<float>(random & 0xFFFFU) * 0x1p-16F);
-      sum += sample(*slot.pyramid, uv, 1.5F, slot.wrap_s, slot.wrap_t, slot.nearest).r;
+      sum += sample(*slot.pyramid, uv, 1.5F, slot.sampler).r;
     }
   });
   return seconds / kLookups * 1e9;
