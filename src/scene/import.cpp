@@ -4,6 +4,7 @@
 #include "scene/gltf_json.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_source.h"
+#include "scene/gltf_specular_glossiness.h"
 #include "scene/import_memory.h"
 
 namespace relook {
@@ -67,6 +68,7 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   ImportShare share;  // of what is held until the import is done; then its result is counted
   auto buffers = load_buffers(source, share);
   imported.images = load_images(source, buffers);
+  convert_specular_glossiness(source.json, imported.images, source.file, imported.warnings, share);
   const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
   imported.meshes = decode_meshes(model, source.file, imported.warnings, share);
   imported.instances = decode_instances(source.json, model, source.file, share);
