@@ -113,12 +113,21 @@ const Schema& material_extensions() {
   static const Schema sheen{{reals("sheenColorFactor", {0.0, 0.0, 0.0}, 0, 1),
                              optional("sheenColorTexture", plain_texture()), number("sheenRoughnessFactor", 0.0, 0, 1),
                              optional("sheenRoughnessTexture", plain_texture())}};
+  static const Schema anisotropy{{number("anisotropyStrength", 0.0, 0, 1),
+                                  number("anisotropyRotation", 0.0, -kMost, kMost),
+                                  optional("anisotropyTexture", plain_texture())}};
+  static const Schema iridescence{
+      {number("iridescenceFactor", 0.0, 0, 1), optional("iridescenceTexture", plain_texture()),
+       number("iridescenceIor", 1.3, 1, kMost), number("iridescenceThicknessMinimum", 100.0, 0, kMost),
+       number("iridescenceThicknessMaximum", 400.0, 0, kMost),
+       optional("iridescenceThicknessTexture", plain_texture())}};
   static const Schema emissive_strength{{number("emissiveStrength", 1.0, 0, kMostIntensity)}};
   static const Schema unlit{};
   static const Schema extensions{
       {implied("KHR_materials_ior", ior), implied("KHR_materials_transmission", transmission),
        implied("KHR_materials_volume", volume), implied("KHR_materials_specular", specular),
        implied("KHR_materials_clearcoat", clearcoat), implied("KHR_materials_sheen", sheen),
+       implied("KHR_materials_anisotropy", anisotropy), implied("KHR_materials_iridescence", iridescence),
        implied("KHR_materials_emissive_strength", emissive_strength), optional("KHR_materials_unlit", unlit)}};
   return extensions;
 }
