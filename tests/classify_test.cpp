@@ -51,6 +51,10 @@ TEST(Table1, color_rows) {
       {"/materials/Glass/extensions/KHR_materials_volume/attenuationColor", "[1, 1, 1]", "[0, 1, 0]"},
       {"/materials/Gold/emissiveFactor", "[0, 0, 0]", "[1, 0, 0]"},
       {"/materials/Gold/extensions/KHR_materials_sheen/sheenColorFactor", "[0, 0, 0]", "[1, 0, 0]"},
+      {"/materials/Gold/extensions/KHR_materials_anisotropy/anisotropyStrength", "0", "0.5"},
+      {"/materials/Gold/extensions/KHR_materials_anisotropy/anisotropyRotation", "0", "1"},
+      {"/materials/Gold/extensions/KHR_materials_iridescence/iridescenceFactor", "0", "1"},
+      {"/materials/Gold/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "400", "500"},
       {"/materials/Gold/extensions/KHR_materials_ior/ior", "1.5", "1.8"},  // nothing is refracted by it
       {"/materials/Gold/normalTexture", kBumps, kStrongBumps},
       {"/materials/Gold/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale", "[1, 1]",

@@ -15,6 +15,7 @@ TEST(PortableMath, AgreesWithTheStandardLibrary) {
     const float x = static_cast<float>(i) * 0.0371F;
     EXPECT_NEAR(portable_exp2(x), std::exp2(double{x}), 1e-6 * std::exp2(double{x}));
     EXPECT_NEAR(portable_sin_turns(x * 0.1F), std::sin(2 * 3.14159265358979 * double{x * 0.1F}), 2e-6);
+    EXPECT_NEAR(portable_cos_turns(x * 0.1F), std::cos(2 * 3.14159265358979 * double{x * 0.1F}), 2e-6);
     EXPECT_NEAR(portable_asin_turns(x / 75), std::asin(double{x / 75}) / (2 * 3.14159265358979), 1e-5);
     const float positive = std::exp(x * 0.5F);
     EXPECT_NEAR(portable_log2(positive), std::log2(double{positive}), 1e-6 * (1 + std::fabs(std::log2(positive))));
@@ -34,6 +35,8 @@ TEST(PortableMath, EdgesOfTheDomain) {
   EXPECT_TRUE(std::isfinite(portable_exp2(1000)));
   EXPECT_EQ(portable_log2(0), -127);
   EXPECT_EQ(portable_atan2_turns(0, 0), 0);
+  EXPECT_EQ(portable_cos_turns(0), portable_cos_turns(7));
+  EXPECT_EQ(portable_cos_turns(0.25F), 0);
   EXPECT_EQ(portable_floor(-0.5F), -1);
   EXPECT_EQ(portable_floor(2), 2);
 }

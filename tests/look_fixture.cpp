@@ -91,7 +91,8 @@ std::string material_text(const Material& m) {
   for (float x :
        {m.alpha_cutoff, m.metallic, m.roughness, m.normal_scale, m.occlusion_strength, m.emissive_strength, m.ior,
         m.transmission, m.thickness, m.attenuation_distance, m.specular, m.clearcoat, m.clearcoat_roughness,
-        m.clearcoat_normal_scale, m.sheen_roughness, m.shininess, m.reflection, m.refraction, m.transparency})
+        m.clearcoat_normal_scale, m.sheen_roughness, m.anisotropy, m.anisotropy_rotation, m.iridescence, m.iridescence_ior,
+        m.iridescence_minimum, m.iridescence_maximum, m.shininess, m.reflection, m.refraction, m.transparency})
     text += bits(x);
   for (const Color& c : {m.emissive, m.attenuation_color, m.specular_color, m.sheen_color, m.phong_ambient,
                          m.phong_diffuse, m.phong_specular})

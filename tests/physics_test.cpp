@@ -345,15 +345,16 @@ double furnace(const Json& material, double view_degrees) {
 }
 
 TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
-  Json dielectric = lambert(1), coated = lambert(1), velvet = lambert(1), rough_metal = metal(0.5), rougher = metal(1);
+  Json dielectric = lambert(1), coated = lambert(1), velvet = lambert(1), rough_metal = metal(0.5), rougher = metal(1), brushed = metal(0.5);
   dielectric["extensions"].erase("KHR_materials_specular");
   dielectric["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
   coated["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.5}};
   velvet["extensions"]["KHR_materials_sheen"] = {{"sheenColorFactor", {1, 1, 1}}, {"sheenRoughnessFactor", 0.5}};
+  brushed["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", 0.6}, {"anisotropyRotation", 0.5}};
   for (const double view : {5.0, 45.0}) {
     SCOPED_TRACE(view);
     EXPECT_NEAR(furnace(lambert(1), view), 1, 0.005);  // all of it comes back: the integral of cos / pi
-    for (const Json& material : {dielectric, coated, velvet, rough_metal, rougher})
+    for (const Json& material : {dielectric, coated, velvet, rough_metal, rougher, brushed})
       EXPECT_LE(furnace(material, view), 1.015);
     for (const Json& material : {dielectric, coated, velvet}) EXPECT_GE(furnace(material, view), 0.85);
   }
@@ -362,6 +363,7 @@ TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
   EXPECT_LE(furnace(dielectric, 75), 1.07);
   // Single scattering alone: a smooth lobe loses little.
   EXPECT_GE(furnace(rough_metal, 5), 0.9);
+  EXPECT_GE(furnace(brushed, 5), 0.85);
 }
 
 TEST(Physics, SurfaceDoesNotShadowItselfWhereCoordinatesVanish) {

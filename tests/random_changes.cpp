@@ -17,7 +17,8 @@ const std::vector<std::string> kImages = {"PictureImage", "SecondImage", "BumpIm
 
 void change_color(Change& change, const Json& look, Dice& dice) {
   const std::string material = "/materials/" + dice.one_of(kMaterials);
-  switch (dice.below(12)) {
+  const auto brush = [&] { return material + "/extensions/KHR_materials_anisotropy"; };
+  switch (dice.below(15)) {
     case 0: {
       Json color = dice.color();
       color.push_back(dice.between(0.2, 1));
@@ -44,6 +45,12 @@ void change_color(Change& change, const Json& look, Dice& dice) {
       return change.set(look, "/textures/Marble/extras/relook/procedural/scale", dice.between(0.5, 4));
     case 10:
       return change.set(look, "/textures/Picture/source", dice.one_of(kImages));
+    case 11:
+      return change.set(look, brush() + "/anisotropyStrength", dice.chance(0.3) ? 0.0 : dice.between(0, 1));
+    case 12:
+      return change.set(look, brush() + "/anisotropyRotation", dice.between(-4, 4));
+    case 13:
+      return change.set(look, brush() + "/anisotropyTexture", {{"index", "Bumps"}});
     default:
       return change.set(look, material + "/extras/relook/diffuse", dice.color());
   }
@@ -53,7 +60,7 @@ void change_optics(Change& change, const Json& look, Dice& dice) {
   const std::string material = "/materials/" + dice.one_of(kMaterials);
   const auto weight = [&] { return dice.chance(0.4) ? 0.0 : dice.between(0, 1); };
   const Json bumps = {{"index", "Bumps"}, {"scale", dice.between(0, 1)}};
-  switch (dice.below(11)) {
+  switch (dice.below(13)) {
     case 0:
       return change.set(look, material + "/pbrMetallicRoughness/roughnessFactor", dice.between(0, 0.5));
     case 1:
@@ -75,6 +82,11 @@ void change_optics(Change& change, const Json& look, Dice& dice) {
       return change.set(look, material + "/extras/relook/refraction", weight());
     case 9:
       return change.set(look, material + "/extras/relook/transparency", weight());
+    case 10:
+      return change.set(look, material + "/extensions/KHR_materials_iridescence/iridescenceFactor", weight());
+    case 11:
+      return change.set(look, material + "/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum",
+                        dice.between(100, 900));
     default:
       return change.set(look, material + "/extensions/KHR_materials_specular/specularFactor", weight());
   }

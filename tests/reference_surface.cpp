@@ -163,15 +163,14 @@ Imath::V4d ReferenceTracer::texture(const Surface& s, Slot which) const {
   return values(sample(*slot.pyramid, at, s.with_level ? static_cast<float>(level) : 0, slot.sampler));
 }
 
-Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) const {
+std::optional<ReferenceTracer::Axes> ReferenceTracer::axes(const Surface& s, Slot which) const {
   const TextureSlot& slot = s.material->slot(which);
-  if (slot.kind == TextureKind::none) return s.n;
   const std::optional<AxisOfMap> frame = smooth_frame(*s.mesh, slot.texcoord, s.triangle->primitive, s.u, s.v);
-  if (!frame) return s.n;
+  if (!frame) return std::nullopt;
   const Imath::M44d world(s.object->to_world);
   Vec along_u;
   world.multDirMatrix(frame->along_u, along_u);
-  const Vec front = s.inside ? -s.n : s.n;
+  const Vec front = s.inside ? -s.smooth : s.smooth;
   const Vec of_mesh = (along_u - front * front.dot(along_u)).normalized();
   // +Y of a map runs against v: images are stored top row first.
   const bool turns = (world.determinant() < 0) != frame->is_mirrored;
@@ -181,10 +180,19 @@ Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) con
   const Vec tangent = (of_mesh * (cosine / slot.scale.x) - against_v * (sine / slot.scale.y)).normalized();
   Vec bitangent = front.cross(tangent);
   if (bitangent.dot(of_mesh * (sine / slot.scale.x) + against_v * (cosine / slot.scale.y)) < 0) bitangent = -bitangent;
+  return Axes{tangent, bitangent};
+}
+
+Vec ReferenceTracer::bent_normal(const Surface& s, Slot which, double scale) const {
+  if (s.material->slot(which).kind == TextureKind::none) return s.smooth;
+  const std::optional<Axes> frame = axes(s, which);
+  if (!frame) return s.smooth;
+  const auto& [tangent, bitangent] = *frame;
+  const Vec front = s.inside ? -s.smooth : s.smooth;
   const Imath::V4d texel = texture(s, which);
   const Vec map((2 * texel.x - 1) * scale, (2 * texel.y - 1) * scale, 2 * texel.z - 1);
   const Vec bent = (tangent * map.x + bitangent * map.y + front * map.z).normalized() * (s.inside ? -1.0 : 1.0);
-  return bent.dot(s.ng) > 0 ? bent : s.n;
+  return bent.dot(s.ng) > 0 ? bent : s.smooth;
 }
 
 void ReferenceTracer::read_material(Surface& s) const {

@@ -114,6 +114,61 @@ SceneState textured_scene() {
   return scene.state();
 }
 
+/// Brushed surfaces and thin films, smooth and rough, metallic and not, with all their textures and without.
+SceneState brushed_scene() {
+  SceneBuilder scene;
+  const int colors = scene.texture("Colors", scene.image("ColorChecks", checks(TexelFormat::srgb8)));
+  const int values = scene.texture("Values", scene.image("ValueChecks", checks(TexelFormat::linear8)));
+  const auto surface = [&](float metallic, float roughness) {
+    return Json{{"pbrMetallicRoughness",
+                 {{"baseColorTexture", {{"index", colors}}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
+  };
+  const auto turned = [](int texture) {
+    Json info = {{"index", texture}};
+    info["extensions"]["KHR_texture_transform"] = {{"rotation", 0.7}, {"scale", {1.5, -0.75}}};
+    return info;
+  };
+  const auto put = [&](const char* name, const Mesh& mesh, const Json& material, const Json& place) {
+    Json node = place;
+    node["mesh"] = scene.mesh(name, mesh, scene.material(name, material));
+    scene.node(name, node);
+  };
+  Json ground = surface(0, 0.4F);
+  ground["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", 0.8}, {"anisotropyRotation", 0.6}};
+  ground["extensions"]["KHR_materials_iridescence"] = {{"iridescenceFactor", 1}, {"iridescenceThicknessMaximum", 520}};
+  Json brushed = surface(1, 0.3F);
+  brushed["extensions"]["KHR_materials_anisotropy"] = {
+      {"anisotropyStrength", 0.9}, {"anisotropyRotation", -2}, {"anisotropyTexture", turned(values)}};
+  brushed["normalTexture"] = {{"index", values}, {"scale", 0.2}};
+  Json mirror = surface(0.5F, 0.1F);
+  mirror["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", 0.15}};
+  mirror["extensions"]["KHR_materials_iridescence"] = {
+      {"iridescenceFactor", 0.9},           {"iridescenceTexture", {{"index", values}}},
+      {"iridescenceIor", 1.9},              {"iridescenceThicknessMinimum", 700},
+      {"iridescenceThicknessMaximum", 200}, {"iridescenceThicknessTexture", turned(values)}};
+  Json bubble = surface(0, 0.05F);
+  bubble["doubleSided"] = true;
+  bubble["extensions"]["KHR_materials_ior"]["ior"] = 1;
+  bubble["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 1;
+  bubble["extensions"]["KHR_materials_iridescence"] = {{"iridescenceFactor", 1}, {"iridescenceIor", 1.33}};
+  Json glass = bubble;
+  glass["extensions"]["KHR_materials_ior"]["ior"] = 1.5;
+  glass["extensions"]["KHR_materials_volume"]["thicknessFactor"] = 1;
+  put("Ground", plane_mesh(5, 2), ground, Json::object());
+  put("Brushed", sphere_mesh(0.6F, 24, 14), brushed, {{"translation", {-1.2, 0.7, 0}}});
+  put("Mirror", box_mesh(Point(0.4F, 0.5F, 0.4F)), mirror,
+      {{"translation", {0, 0.6, -0.5}}, {"rotation", {0, 0.3, 0, 0.954}}, {"scale", {-1, 1, 1.2}}});
+  put("Bubble", sphere_mesh(0.4F, 24, 14), bubble, {{"translation", {0.3, 0.6, 1.2}}});
+  put("Glass", box_mesh(Point(0.4F, 0.4F, 0.4F)), glass,
+      {{"translation", {1.3, 0.6, 0.2}}, {"rotation", {0, 0.2, 0, 0.98}}});
+  scene.light("Lamp", {{"type", "point"}, {"intensity", 40}}, {{"translation", {1, 4, 3}}});
+  scene.light("Sun", {{"type", "directional"}, {"intensity", 1}}, {{"rotation", {-0.45, -0.25, 0.1, 0.85}}});
+  scene.ambient(Color(0.2F, 0.2F, 0.25F));
+  scene.environment({{"color", {0.5, 0.6, 0.8}}});
+  scene.look_at(Point(0.2F, 1.6F, 5), Point(0, 0.6F, 0), 44, 64, 48);
+  return scene.state();
+}
+
 /// Light and rays through everything that lets them pass: tinted glass around an opaque ball, veils before and behind,
 /// phong surfaces with all three proportions, thin panes with a metallic share, vertex alpha.
 SceneState transport_scene() {
@@ -174,6 +229,8 @@ TEST(Reference, TexturesPrimaryRaysOnly) { expect_agreement(textured_scene(), 1)
 TEST(Reference, Textures) { expect_agreement(textured_scene(), 6); }
 TEST(Reference, TransportPrimaryRaysOnly) { expect_agreement(transport_scene(), 1); }
 TEST(Reference, Transport) { expect_agreement(transport_scene(), 6); }
+TEST(Reference, BrushedPrimaryRaysOnly) { expect_agreement(brushed_scene(), 1); }
+TEST(Reference, Brushed) { expect_agreement(brushed_scene(), 5); }
 TEST(Reference, OrthographicCamera) {
   SceneBuilder camera;
   camera.look_orthographic(Point(0.3F, 2, 4.5F), Point(0, 0.6F, 0), 1.5F, 64, 48);

@@ -40,6 +40,38 @@ double fresnel_exact(double cosine, double eta) {
   return (s * s + p * p) / 2;
 }
 
+/// KHR_materials_iridescence: the sum over the light that crosses the film 0, 1 and 2 times more, each seen through the
+/// colour matching functions at its path's length, given as Fourier transforms of Gaussians.
+Vec film_reflectance(Vec f0, double film, double nanometres, double cosine) {
+  const double below = std::sqrt(1 - (1 - cosine * cosine) / (film * film)), air = std::pow((film - 1) / (film + 1), 2);
+  const double r12 = air + (1 - air) * schlick(cosine), path = 2 * film * std::max(nanometres, 0.0) * below;
+  Vec reflectance(0, 0, 0), shift(0, 0, 0), strength(0, 0, 0);
+  for (int c = 0; c < 3; ++c) {
+    const double root = std::sqrt(std::min(f0[c] + 1e-4, 0.9999)), base = (1 + root) / (1 - root);
+    const double normal = std::pow((base - film) / (base + film), 2), r23 = normal + (1 - normal) * schlick(below);
+    const double both = std::clamp(r12 * r23, 1e-5, 0.9999), inner = std::pow(1 - r12, 2) * r23 / (1 - both);
+    reflectance[c] = r12 + inner;
+    strength[c] = inner - (1 - r12);
+    shift[c] = kPi + (base < film ? kPi : 0);
+    f0[c] = std::sqrt(both);  // from here on: what a crossing leaves
+  }
+  for (int m = 1; m <= 2; ++m) {
+    const double phase = 2 * kPi * m * path * 1e-9;
+    const auto seen = [&](double value, double position, double variance, double turn) {
+      return value * std::sqrt(2 * kPi * variance) * std::cos(position * phase + m * turn) *
+             std::exp(-phase * phase * variance) / 1.0685e-7;
+    };
+    const double x =
+        seen(5.4856e-13, 1.6810e6, 4.3278e9, shift.x) + seen(9.7470e-14, 2.2399e6, 4.5282e9, shift.x);
+    const double y = seen(4.4201e-13, 1.7953e6, 9.3046e9, shift.y), z = seen(5.2481e-13, 2.2084e6, 6.6121e9, shift.z);
+    const Vec rgb(3.2404542 * x - 1.5371385 * y - 0.4985314 * z, -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
+                  0.0556434 * x - 0.2040259 * y + 1.0572252 * z);
+    strength *= f0;
+    reflectance += strength * rgb * 2.0;
+  }
+  return {positive(reflectance.x), positive(reflectance.y), positive(reflectance.z)};
+}
+
 }  // namespace
 
 namespace {
@@ -202,6 +234,32 @@ std::optional<Vec> ReferenceTracer::refracted_way(const Surface& s, double ior) 
   return bent || !s.inside ? bent : refracted(s.view, s.ng, ior);
 }
 
+double ReferenceTracer::specular_lobe(const Surface& s, Vec toward, double nl, double nv) const {
+  const Vec h = (s.view + toward).normalized();
+  const double alpha = std::pow(std::max(s.roughness, 0.05), 2), nh = positive(s.n.dot(h));
+  const std::optional<Axes> frame = s.material->anisotropy > 0 ? axes(s, Slot::anisotropy) : std::nullopt;
+  if (!frame) return ggx(nh, nl, nv, alpha);
+  const Imath::V4d texel = texture(s, Slot::anisotropy);
+  const bool has_map = s.material->slot(Slot::anisotropy).kind != TextureKind::none;
+  const double angle = (has_map ? std::atan2(2 * texel.y - 1, 2 * texel.x - 1) : 0) + s.material->anisotropy_rotation;
+  const Vec t = frame->tangent * std::cos(angle) + frame->bitangent * std::sin(angle);
+  const Vec b = frame->bitangent * std::cos(angle) - frame->tangent * std::sin(angle);
+  const double wide = alpha + (1 - alpha) * std::pow(s.material->anisotropy * texel.z, 2);
+  // Burley's distribution, and Smith's shadowing with the roughness in the plane of each direction.
+  const double d = 1 / (kPi * wide * alpha *
+                        std::pow(std::pow(t.dot(h) / wide, 2) + std::pow(b.dot(h) / alpha, 2) + nh * nh, 2));
+  const auto shadow = [&](Vec w, double up) {
+    return std::sqrt(1 + (std::pow(wide * t.dot(w), 2) + std::pow(alpha * b.dot(w), 2)) / (up * up)) / 2 - 0.5;
+  };
+  return d / ((1 + shadow(s.view, nv) + shadow(toward, nl)) * 4 * nl * nv);
+}
+
+double ReferenceTracer::mirror_roughness(const Surface& s) const {
+  if (s.material->anisotropy == 0 || !axes(s, Slot::anisotropy)) return s.roughness;
+  const double strength = s.material->anisotropy * texture(s, Slot::anisotropy).z, alpha = s.roughness * s.roughness;
+  return std::sqrt(alpha * (1 - strength * strength) + strength * strength);
+}
+
 Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const {
   const Material& m = *s.material;
   const double ior = m.ior, nv = std::max(s.n.dot(s.view), 1e-4), dielectric = 1 - s.metallic;
@@ -209,14 +267,20 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
   const Imath::V4d tint = texture(s, Slot::specular_color);
   Vec f0 = color_of(m.specular_color) * Vec(tint.x, tint.y, tint.z) * r0;
   for (int c = 0; c < 3; ++c) f0[c] = std::min(f0[c], 1.0) * f90;
-  const auto fd = [&](double w) { return f0 + (Vec(f90, f90, f90) - f0) * w; };
-  const auto fresnel = [&](double w) {
-    return fd(w) * dielectric + (s.base + (Vec(1, 1, 1) - s.base) * w) * s.metallic;
+  const bool interface_only = s.optics.volume && s.inside;
+  const double share = interface_only ? 0 : m.iridescence * texture(s, Slot::iridescence).x;
+  const double film = m.iridescence_minimum + (double{m.iridescence_maximum} - m.iridescence_minimum) *
+                                                  texture(s, Slot::iridescence_thickness).y;
+  const auto filmed = [&](Vec bare, Vec normal, double cosine) {
+    return share == 0 ? bare : bare * (1 - share) + film_reflectance(normal, m.iridescence_ior, film, cosine) * share;
+  };
+  const auto fd = [&](double w, double c) { return filmed(f0 + (Vec(f90, f90, f90) - f0) * w, f0, c); };
+  const auto fresnel = [&](double w, double c) {
+    return fd(w, c) * dielectric + filmed(s.base + (Vec(1, 1, 1) - s.base) * w, s.base, c) * s.metallic;
   };
   const double exact = fresnel_exact(s.inside ? std::max(nv, s.ng.dot(s.view)) : nv, s.inside ? ior : 1 / ior);
   const double weight = s.optics.volume ? std::clamp((exact - r0) / (1 - r0), 0.0, 1.0) : schlick(nv);
-  const double diffuse = dielectric * (1 - s.transmission), fade = mirror_fade(s.roughness);
-  const bool interface_only = s.optics.volume && s.inside;
+  const double diffuse = dielectric * (1 - s.transmission), fade = mirror_fade(mirror_roughness(s));
   const std::vector<Arriving> lights = interface_only ? std::vector<Arriving>() : lamps(s);
 
   Vec color(0, 0, 0), coat(0, 0, 0), sheen(0, 0, 0);
@@ -230,9 +294,8 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
     const Vec h = (s.view + toward).normalized();
     const double nl = positive(s.n.dot(toward)), vh = positive(s.view.dot(h)), coat_nl = positive(s.nc.dot(toward));
     if (nl > 0) {
-      const Vec f = fd(schlick(vh));
-      const double spec = ggx(positive(s.n.dot(h)), nl, nv, std::pow(std::max(s.roughness, 0.05), 2));
-      color += (s.base * (diffuse * (1 - largest(f)) / kPi) + fresnel(schlick(vh)) * spec) * irradiance * nl;
+      const double spec = specular_lobe(s, toward, nl, nv), left = positive(1 - largest(fd(schlick(vh), vh)));
+      color += (s.base * (diffuse * left / kPi) + fresnel(schlick(vh), vh) * spec) * irradiance * nl;
       sheen += sheen_color * irradiance * (charlie(positive(s.n.dot(h)), nl, nv, sheen_rough) * nl);
     }
     if (coat_nl > 0 && coat_weight > 0)
@@ -241,17 +304,17 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
   }
   if (!interface_only)
     color += color_of(scene_.ambient) * s.occlusion *
-             (s.base * (diffuse * (1 - largest(fd(weight)))) + fresnel(weight) * (1 - fade));
+             (s.base * (diffuse * positive(1 - largest(fd(weight, nv)))) + fresnel(weight, nv) * (1 - fade));
   if (s.optics.reflects) {
     const Answer answer = spawn(s, ray, reflected(s, s.n), s.optics.dielectric_cut ? exact : 1);
-    color += fresnel(weight) * fade * beer(s, s.inside, answer);
+    color += fresnel(weight, nv) * fade * beer(s, s.inside, answer);
   }
   if (s.optics.refracts) {
     const auto bent = refracted_way(s, ior);
     if (!s.optics.bent || bent) {
       const Answer answer = spawn(s, ray, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
       const Vec filter = s.optics.volume && s.inside ? Vec(1, 1, 1) : s.base;
-      color += filter * (dielectric * s.transmission * (1 - largest(fd(weight)))) * beer(s, !s.inside, answer);
+      color += filter * (dielectric * s.transmission * positive(1 - largest(fd(weight, nv)))) * beer(s, !s.inside, answer);
     }
   }
   if (largest(sheen_color) > 0) color = color * (1 - largest(sheen_color) * sheen_albedo(nv, sheen_rough)) + sheen;

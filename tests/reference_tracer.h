@@ -80,7 +80,15 @@ class ReferenceTracer {
   [[nodiscard]] Found nearest(Vec origin, Vec direction) const;
   [[nodiscard]] Surface surface_at(const Found& found, const Ray& ray) const;
   [[nodiscard]] Imath::V4d texture(const Surface& s, Slot slot) const;
+  struct Axes {
+    Vec tangent, bitangent;
+  };
+  /// Of a map, for the front of the surface.
+  [[nodiscard]] std::optional<Axes> axes(const Surface& s, Slot slot) const;
   [[nodiscard]] Vec bent_normal(const Surface& s, Slot slot, double scale) const;
+  /// D V of the base layer, and the roughness that fades its mirror.
+  [[nodiscard]] double specular_lobe(const Surface& s, Vec toward, double nl, double nv) const;
+  [[nodiscard]] double mirror_roughness(const Surface& s) const;
   void read_material(Surface& s) const;
 
   [[nodiscard]] Vec tint_of(const Found& crossing, Vec direction, double inside_length, double footprint) const;

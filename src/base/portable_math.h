@@ -75,6 +75,12 @@ namespace relook {
   return p * a;
 }
 
+/// cos(2 pi x), for |x| < 2^31.
+[[nodiscard, gnu::always_inline]] inline float portable_cos_turns(float x) {
+  const float f = x - portable_floor(x + 0.5F);  // [-1/2, 1/2]
+  return portable_sin_turns(0.25F - std::fabs(f));
+}
+
 /// atan(y / x) in the right quadrant, in turns: [-1/2, 1/2]; 0 for (0, 0).
 [[nodiscard, gnu::always_inline]] inline float portable_atan2_turns(float y, float x) {
   const float ax = std::fabs(x), ay = std::fabs(y);

@@ -27,6 +27,8 @@ inline Scalar max(Scalar a, float b) { return max(a, number(a, b)); }
 inline Scalar sqrt(Scalar a) { return {a.builder, a.builder->apply(Op::sqrt, a.value)}; }
 inline Scalar exp2(Scalar a) { return {a.builder, a.builder->apply(Op::exp2, a.value)}; }
 inline Scalar log2(Scalar a) { return {a.builder, a.builder->apply(Op::log2, a.value)}; }
+/// cos(2 pi a)
+inline Scalar cos_turns(Scalar a) { return {a.builder, a.builder->apply(Op::cos_turns, a.value)}; }
 /// condition > 0 ? a : b
 inline Scalar if_positive(Scalar condition, Scalar a, Scalar b) {
   return {a.builder, a.builder->apply(Op::if_positive, condition.value, a.value, b.value)};

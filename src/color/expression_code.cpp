@@ -20,6 +20,7 @@ unsigned operand_count(Op op) {
     case Op::sqrt:
     case Op::exp2:
     case Op::log2:
+    case Op::cos_turns:
     case Op::channel:
       return 1;
     case Op::add:

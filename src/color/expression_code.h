@@ -22,6 +22,7 @@ enum class Op : std::uint8_t {
   sqrt,
   exp2,
   log2,
+  cos_turns,  // cos(2 pi a)
   add,
   subtract,
   multiply,

@@ -48,6 +48,12 @@ FieldMask changed_fields(const Material& a, const Material& b) {
   note(Field::clearcoat_normal_scale, a.clearcoat_normal_scale != b.clearcoat_normal_scale);
   note(Field::sheen_color, a.sheen_color != b.sheen_color);
   note(Field::sheen_roughness, a.sheen_roughness != b.sheen_roughness);
+  note(Field::anisotropy, a.anisotropy != b.anisotropy);
+  note(Field::anisotropy_rotation, a.anisotropy_rotation != b.anisotropy_rotation);
+  note(Field::iridescence, a.iridescence != b.iridescence);
+  note(Field::iridescence_ior, a.iridescence_ior != b.iridescence_ior);
+  note(Field::iridescence_minimum, a.iridescence_minimum != b.iridescence_minimum);
+  note(Field::iridescence_maximum, a.iridescence_maximum != b.iridescence_maximum);
   note(Field::phong_ambient, a.phong_ambient != b.phong_ambient);
   note(Field::phong_diffuse, a.phong_diffuse != b.phong_diffuse);
   note(Field::phong_specular, a.phong_specular != b.phong_specular);
@@ -100,6 +106,20 @@ float field_value(const Material& m, Field field, unsigned component) {
       return of(m.sheen_color);
     case Field::sheen_roughness:
       return m.sheen_roughness;
+    case Field::anisotropy:
+      return m.anisotropy;
+    case Field::anisotropy_rotation: {
+      const double angle = m.anisotropy_rotation;
+      return static_cast<float>(component == 0 ? std::cos(angle) : std::sin(angle));
+    }
+    case Field::iridescence:
+      return m.iridescence;
+    case Field::iridescence_ior:
+      return m.iridescence_ior;
+    case Field::iridescence_minimum:
+      return m.iridescence_minimum;
+    case Field::iridescence_maximum:
+      return m.iridescence_maximum;
     case Field::phong_ambient:
       return of(m.phong_ambient);
     case Field::phong_diffuse:

@@ -31,6 +31,12 @@ enum class Field : std::uint8_t {
   clearcoat_normal_scale,
   sheen_color,
   sheen_roughness,
+  anisotropy,
+  anisotropy_rotation,  // components: its cosine, its sine
+  iridescence,
+  iridescence_ior,
+  iridescence_minimum,
+  iridescence_maximum,
   phong_ambient,
   phong_diffuse,
   phong_specular,
@@ -43,9 +49,9 @@ enum class Field : std::uint8_t {
 inline constexpr unsigned kFirstSlotField = static_cast<unsigned>(Field::count);
 inline constexpr unsigned kFirstSlotColor = kFirstSlotField + static_cast<unsigned>(kSlotCount);
 inline constexpr unsigned kMappingField = kFirstSlotColor + static_cast<unsigned>(kSlotCount);
-static_assert(kMappingField < 64);
+static_assert(kMappingField < 128);
 
-using FieldMask = std::uint64_t;
+__extension__ using FieldMask = unsigned __int128;
 [[nodiscard]] constexpr FieldMask mask_of(Field field) { return FieldMask{1} << static_cast<unsigned>(field); }
 [[nodiscard]] constexpr FieldMask mask_of(Slot slot) {
   return FieldMask{1} << (kFirstSlotField + static_cast<unsigned>(slot));

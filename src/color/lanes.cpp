@@ -96,6 +96,9 @@ const Kernel::Step* run_steps(const Kernel::Step* step, const Kernel::Step* end,
       case Op::log2:
         for (std::size_t i = 0; i < n; ++i) out[i] = portable_log2(a[i]);
         break;
+      case Op::cos_turns:
+        for (std::size_t i = 0; i < n; ++i) out[i] = portable_cos_turns(a[i]);
+        break;
       case Op::if_positive:
         for (std::size_t i = 0; i < n; ++i) out[i] = a[i] > 0 ? b[i] : c[i];
         break;

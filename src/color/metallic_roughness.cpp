@@ -1,8 +1,10 @@
-// glTF 2.0 Appendix B with KHR_materials_{ior, specular, transmission, volume, clearcoat, sheen, emissive_strength} as
-// a colour expression. SHADING.md has the formulas.
+// glTF 2.0 Appendix B with KHR_materials_{ior, specular, transmission, volume, anisotropy, iridescence, clearcoat, sheen,
+// emissive_strength} as a colour expression. SHADING.md has the formulas.
 #include <numbers>
+#include <optional>
 
 #include "color/surface_terms.h"
+#include "color/thin_film.h"
 
 namespace relook {
 namespace {
@@ -23,6 +25,69 @@ Scalar squared_alpha(Scalar roughness) {
   const Scalar alpha = rough * rough;
   return alpha * alpha;
 }
+
+/// A direction in the frame of a brushed surface.
+struct Brushed {
+  Scalar along, across, up;  // cosines with the two axes and the normal
+};
+
+/// D V of the anisotropic GGX lobe (Burley 2012; Heitz 2014 section 5.4).
+Scalar brushed_ggx(Scalar alpha_along, Scalar alpha_across, const Brushed& half, const Brushed& light,
+                   const Brushed& view) {
+  const auto square = [](Scalar x) { return x * x; };
+  const Scalar both = alpha_along * alpha_across;
+  const Scalar stretched =
+      square(alpha_across * half.along) + square(alpha_along * half.across) + square(both * half.up);
+  const Scalar share = both / max(stretched, 1e-12F);
+  const Scalar distribution = both * share * share * kInversePi;
+  const auto length = [&](const Brushed& w) {
+    return sqrt(square(alpha_along * w.along) + square(alpha_across * w.across) + square(w.up));
+  };
+  return distribution * (0.5F / max(light.up * length(view) + view.up * length(light), 1e-7F));
+}
+
+/// KHR_materials_anisotropy at a hit: which way the lobe is wider, and by how much.
+class Brush {
+ public:
+  explicit Brush(SurfaceTerms& terms) {
+    const auto [tangent, bitangent] = terms.axes(Slot::anisotropy);
+    const Scalar cosine = terms.field(Field::anisotropy_rotation, 0);
+    const Scalar sine = terms.field(Field::anisotropy_rotation, 1);
+    Scalar x = cosine, y = sine;
+    if (terms.has(Slot::anisotropy)) {
+      const Scalar u = terms.texel(Slot::anisotropy, 0) * 2.0F - 1.0F;
+      const Scalar v = terms.texel(Slot::anisotropy, 1) * 2.0F - 1.0F;
+      const Scalar scale = 1.0F / sqrt(max(u * u + v * v, 1e-30F));
+      x = (cosine * u - sine * v) * scale;
+      y = (sine * u + cosine * v) * scale;
+    }
+    along_ = tangent * x + bitangent * y;
+    across_ = bitangent * x - tangent * y;
+    const Scalar strength = terms.textured(Field::anisotropy, Slot::anisotropy, 2);
+    is_there_ = dot(along_, along_);
+    strength2_ = strength * strength;
+  }
+
+  /// `isotropic` where the mesh gives no tangents; it is D V without anisotropy.
+  [[nodiscard]] Scalar lobe(Scalar roughness, const Triple& half, Scalar nh, const Triple& light, Scalar nl,
+                            const Triple& view, Scalar nv, Scalar isotropic) const {
+    const Scalar rough = max(roughness, 0.05F);
+    const Scalar alpha = rough * rough;
+    const auto seen = [&](const Triple& way, Scalar up) { return Brushed{dot(along_, way), dot(across_, way), up}; };
+    const Scalar lobe = brushed_ggx(widened(alpha), alpha, seen(half, nh), seen(light, nl), seen(view, nv));
+    return if_positive(is_there_, lobe, isotropic);
+  }
+  /// Of the wider direction: a surface mirrors as far as it is smooth both ways.
+  [[nodiscard]] Scalar mirror_roughness(Scalar roughness) const {
+    return if_positive(is_there_, sqrt(widened(roughness * roughness)), roughness);
+  }
+
+ private:
+  [[nodiscard]] Scalar widened(Scalar alpha) const { return alpha + (1.0F - alpha) * strength2_; }
+
+  Triple along_, across_;
+  Scalar is_there_, strength2_;
+};
 
 /// Exact unpolarised Fresnel reflectance R as the weight between f0 and f90: (R - r0) / (1 - r0).
 Scalar exact_weight(SurfaceTerms& terms, Scalar cosine) {
@@ -54,7 +119,11 @@ class BaseLayer {
         f0_(dielectric_f0()),
         normal_(terms.normal(Slot::normal, Field::normal_scale)),
         view_(terms.view()),
-        nv_(max(dot(normal_, view_), 1e-4F)) {}
+        nv_(max(dot(normal_, view_), 1e-4F)) {
+    if (t_.builder().shape(Field::anisotropy).anisotropic) brush_.emplace(terms);
+    // The inside of a volume is an interface of its ior alone.
+    if (t_.builder().shape(Field::iridescence).iridescent && !t_.key().interface_only) film_ = film();
+  }
 
   [[nodiscard]] Triple normal() const { return normal_; }
   [[nodiscard]] Scalar nv() const { return nv_; }
@@ -64,10 +133,14 @@ class BaseLayer {
     const Triple half = normalized(direction + view_);
     const Scalar nl = max(dot(normal_, direction), 0.0F);
     const Scalar nh = min(max(dot(normal_, half), 0.0F), 1.0F);
-    const Scalar weight = schlick(max(dot(view_, half), 0.0F));
-    const Triple dielectric = dielectric_fresnel(weight);
+    const Scalar vh = max(dot(view_, half), 0.0F);
+    const Scalar weight = schlick(vh);
+    const Triple dielectric = dielectric_fresnel(weight, vh);
     const Triple diffuse = base_ * (diffuse_share(dielectric) * kInversePi);
-    const Triple spec = fresnel(dielectric, weight) * ggx(alpha2_, nh, nl, nv_);
+    const Scalar isotropic = ggx(alpha2_, nh, nl, nv_);
+    const Scalar lobe =
+        brush_ ? brush_->lobe(roughness_, half, nh, direction, nl, view_, nv_, isotropic) : isotropic;
+    const Triple spec = fresnel(dielectric, weight, vh) * lobe;
     return (diffuse + spec) * nl;
   }
 
@@ -75,9 +148,9 @@ class BaseLayer {
   [[nodiscard]] Triple view_terms() {
     const bool volume = t_.builder().shape(Field::thickness).thick && may_transmit();
     const Scalar weight = volume ? exact_weight(t_, interface_cosine()) : schlick(nv_);
-    const Triple dielectric = dielectric_fresnel(weight);
-    const Triple mirror = fresnel(dielectric, weight);
-    const Scalar fade = mirror_fade(roughness_);
+    const Triple dielectric = dielectric_fresnel(weight, nv_);
+    const Triple mirror = fresnel(dielectric, weight, nv_);
+    const Scalar fade = mirror_fade(brush_ ? brush_->mirror_roughness(roughness_) : roughness_);
     Triple sum = t_.grey(0);
     if (!t_.key().interface_only && t_.counts(kAmbientSource))
       sum = t_.ambient() * t_.occlusion() * (base_ * diffuse_share(dielectric) + mirror * (1.0F - fade));
@@ -87,7 +160,7 @@ class BaseLayer {
       sum = sum + seen;
     }
     if (t_.has_child(Branch::refraction)) {
-      const Scalar share = (1.0F - metallic_) * transmission_ * (1.0F - largest(dielectric));
+      const Scalar share = (1.0F - metallic_) * transmission_ * passed(dielectric);
       Triple seen = t_.child(Branch::refraction) * share;
       if (!volume || !t_.key().inside) seen = seen * base_;  // a volume tints once, where it is entered
       if (volume && !t_.key().inside) seen = seen * t_.beer(child_length(Branch::refraction));
@@ -114,16 +187,36 @@ class BaseLayer {
     const Triple color = t_.textured3(Field::specular_color, Slot::specular_color) * (root * root);
     return Triple{min(color.x, 1.0F), min(color.y, 1.0F), min(color.z, 1.0F)} * specular_;
   }
-  [[nodiscard]] Triple dielectric_fresnel(Scalar weight) {
-    return f0_ + (Triple{specular_, specular_, specular_} - f0_) * weight;
+  [[nodiscard]] ThinFilm film() {
+    Scalar thickness = t_.field(Field::iridescence_maximum);
+    if (t_.has(Slot::iridescence_thickness)) {
+      const Scalar least = t_.field(Field::iridescence_minimum);
+      thickness = least + (thickness - least) * t_.texel(Slot::iridescence_thickness, 1);
+    }
+    return {t_.field(Field::iridescence_ior), thickness};
   }
-  /// Dielectric and metal, mixed; `weight` as for dielectric_fresnel.
-  [[nodiscard]] Triple fresnel(const Triple& dielectric, Scalar weight) {
-    const Triple metal = base_ + (t_.grey(1) - base_) * weight;
+  /// As much of the film over a bare surface as iridescence says.
+  [[nodiscard]] Triple filmed(const Triple& bare, const Triple& f0, Scalar cosine) {
+    if (!film_) return bare;
+    const Scalar share = t_.textured(Field::iridescence, Slot::iridescence, 0);
+    return bare * (1.0F - share) + film_fresnel(*film_, f0, cosine) * share;
+  }
+  /// `weight`: between f0 and f90; `cosine`: of incidence.
+  [[nodiscard]] Triple dielectric_fresnel(Scalar weight, Scalar cosine) {
+    return filmed(f0_ + (Triple{specular_, specular_, specular_} - f0_) * weight, f0_, cosine);
+  }
+  /// Dielectric and metal, mixed; `weight` and `cosine` as for dielectric_fresnel.
+  [[nodiscard]] Triple fresnel(const Triple& dielectric, Scalar weight, Scalar cosine) {
+    const Triple metal = filmed(base_ + (t_.grey(1) - base_) * weight, base_, cosine);
     return dielectric * (1.0F - metallic_) + metal * metallic_;
   }
+  /// What a dielectric does not reflect.
+  [[nodiscard]] Scalar passed(const Triple& dielectric) {
+    const Scalar rest = 1.0F - largest(dielectric);
+    return film_ ? max(rest, 0.0F) : rest;
+  }
   [[nodiscard]] Scalar diffuse_share(const Triple& dielectric) {
-    return (1.0F - metallic_) * (1.0F - transmission_) * (1.0F - largest(dielectric));
+    return (1.0F - metallic_) * (1.0F - transmission_) * passed(dielectric);
   }
 
   SurfaceTerms& t_;
@@ -131,6 +224,8 @@ class BaseLayer {
   Scalar metallic_, roughness_, alpha2_, transmission_, specular_;
   Triple f0_, normal_, view_;
   Scalar nv_;
+  std::optional<Brush> brush_;
+  std::optional<ThinFilm> film_;
 };
 
 /// A sheen layer over what lies below (Charlie distribution, Ashikhmin visibility).

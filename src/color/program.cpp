@@ -39,13 +39,14 @@ MaterialStructure structure_of(const Material& material) {
                               material.thickness > 0,
                               is_positive(material.sheen_color),
                               material.clearcoat > 0,
+                              material.anisotropy > 0,
+                              material.iridescence > 0,
                               0,
                               0};
   for (std::size_t slot = 0; slot < kSlotCount; ++slot) {
     const TextureKind kind = material.slots[slot].kind;
-    if (kind != TextureKind::none) structure.textures = static_cast<std::uint16_t>(structure.textures | 1U << slot);
-    if (kind == TextureKind::procedural)
-      structure.procedurals = static_cast<std::uint16_t>(structure.procedurals | 1U << slot);
+    if (kind != TextureKind::none) structure.textures |= 1U << slot;
+    if (kind == TextureKind::procedural) structure.procedurals |= 1U << slot;
   }
   return structure;
 }

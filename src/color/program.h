@@ -31,11 +31,12 @@ struct Dependencies {
 struct MaterialStructure {
   IlluminationModel model = IlluminationModel::metallic_roughness;
   AlphaMode alpha_mode = AlphaMode::opaque;
-  bool transmits = false, thick = false, sheen = false, clearcoat = false;  // the value is not zero
-  std::uint16_t textures = 0, procedurals = 0;                              // bit per Slot: there is one; procedural
+  // The value is not zero:
+  bool transmits = false, thick = false, sheen = false, clearcoat = false, anisotropic = false, iridescent = false;
+  std::uint32_t textures = 0, procedurals = 0;  // bit per Slot: there is one; procedural
   auto operator<=>(const MaterialStructure&) const = default;
 };
-static_assert(kSlotCount <= 16);
+static_assert(kSlotCount <= 32);
 [[nodiscard]] MaterialStructure structure_of(const Material& material);
 
 /// Builds the expression of one node. All arithmetic happens in the order in which it is written.

@@ -37,19 +37,24 @@ Triple SurfaceTerms::emission() {
   return color * field(Field::emissive_strength);
 }
 
-Triple SurfaceTerms::normal(Slot slot, Field scale) {
-  const Triple smooth = input3(Input::normal);
-  if (!has(slot)) return smooth;
+SurfaceTerms::Axes SurfaceTerms::axes(Slot slot) {
   const Value frame = b_.tangent_frame(slot);
   const auto axis = [&](unsigned first) {
     return Triple{
         {&b_, b_.channel(frame, first)}, {&b_, b_.channel(frame, first + 1)}, {&b_, b_.channel(frame, first + 2)}};
   };
+  return {axis(0), axis(3)};
+}
+
+Triple SurfaceTerms::normal(Slot slot, Field scale) {
+  const Triple smooth = input3(Input::normal);
+  if (!has(slot)) return smooth;
+  const auto [tangent, bitangent] = axes(slot);
   // The frame belongs to the front of the surface; behind it everything is turned round.
   const Triple front = key_.inside ? smooth * number(-1) : smooth;
   const Scalar strength = field(scale);
   const Scalar x = (texel(slot, 0) * 2.0F - 1.0F) * strength, y = (texel(slot, 1) * 2.0F - 1.0F) * strength;
-  const Triple bent = normalized(axis(0) * x + axis(3) * y + front * (texel(slot, 2) * 2.0F - 1.0F));
+  const Triple bent = normalized(tangent * x + bitangent * y + front * (texel(slot, 2) * 2.0F - 1.0F));
   const Triple turned = key_.inside ? bent * number(-1) : bent;
   return if_positive(dot(turned, input3(Input::geometric)), turned, smooth);
 }

@@ -35,6 +35,11 @@ class SurfaceTerms {
   [[nodiscard]] Scalar occlusion();
   [[nodiscard]] Triple emission();
   [[nodiscard]] Triple normal(Slot slot, Field scale);
+  /// The axes of a map, for the front of the surface; zero where the mesh gives none.
+  struct Axes {
+    Triple tangent, bitangent;
+  };
+  [[nodiscard]] Axes axes(Slot slot);
   [[nodiscard]] Triple view() { return input3(Input::view); }
   [[nodiscard]] Triple ambient() { return {{&b_, b_.ambient(0)}, {&b_, b_.ambient(1)}, {&b_, b_.ambient(2)}}; }
 

@@ -57,7 +57,10 @@ constexpr std::array<std::string_view, kSlotCount> kSlotNames{"base colour textu
                                                               "clearcoat roughness texture",
                                                               "clearcoat normal map",
                                                               "sheen colour texture",
-                                                              "sheen roughness texture"};
+                                                              "sheen roughness texture",
+                                                              "anisotropy texture",
+                                                              "iridescence texture",
+                                                              "iridescence thickness texture"};
 
 std::string describe_slot(const TextureSlot& before, const TextureSlot& after) {
   if (before.kind == TextureKind::none) return "added";
@@ -125,6 +128,12 @@ std::string describe_material_change(const Material& before, const Material& aft
   s.compare("clearcoat normal scale", before.clearcoat_normal_scale, after.clearcoat_normal_scale);
   s.compare("sheen colour", before.sheen_color, after.sheen_color);
   s.compare("sheen roughness", before.sheen_roughness, after.sheen_roughness);
+  s.compare("anisotropy", before.anisotropy, after.anisotropy);
+  s.compare("anisotropy rotation", before.anisotropy_rotation, after.anisotropy_rotation);
+  s.compare("iridescence", before.iridescence, after.iridescence);
+  s.compare("index of the iridescent film", before.iridescence_ior, after.iridescence_ior);
+  s.compare("smallest film thickness", before.iridescence_minimum, after.iridescence_minimum);
+  s.compare("film thickness", before.iridescence_maximum, after.iridescence_maximum);
   s.compare("ambient coefficient", before.phong_ambient, after.phong_ambient);
   s.compare("diffuse coefficient", before.phong_diffuse, after.phong_diffuse);
   s.compare("specular coefficient", before.phong_specular, after.phong_specular);

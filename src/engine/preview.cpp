@@ -11,6 +11,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/png_chunks.h"
 #include "base/pool.h"
 #include "engine/deflate.h"
 
@@ -60,19 +61,6 @@ void append(Bytes& out, BytesView data) {
   const std::size_t start = out.size();
   out.resize(start + data.size());
   std::copy(data.begin(), data.end(), out.data() + start);
-}
-
-void append_number(Bytes& out, std::uint32_t value) {
-  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::byte>(value >> shift & 0xFF));
-}
-
-void append_chunk(Bytes& out, std::string_view type, BytesView data) {
-  append_number(out, static_cast<std::uint32_t>(data.size()));
-  const std::size_t start = out.size();
-  append(out, bytes_of(type));
-  append(out, data);
-  const uLong sum = crc32(0, reinterpret_cast<const Bytef*>(out.data() + start), static_cast<uInt>(out.size() - start));
-  append_number(out, static_cast<std::uint32_t>(sum));
 }
 
 /// The nearest code of a display value.
@@ -170,20 +158,20 @@ Bytes PreviewEncoder::png() {
     checksum = adler32_combine(checksum, bands_[band].checksum, static_cast<z_off_t>(band_bytes));
   }
   for (const int value : {0x03, 0x00}) stream.push_back(static_cast<std::byte>(value));  // an empty last block
-  append_number(stream, static_cast<std::uint32_t>(checksum));
+  append_png_number(stream, static_cast<std::uint32_t>(checksum));
 
   Bytes png;
-  append(png, bytes_of("\x89PNG\r\n\x1A\n"));
+  append(png, bytes_of(kPngSignature));
   Bytes header;
-  append_number(header, width_);
-  append_number(header, height_);
+  append_png_number(header, width_);
+  append_png_number(header, height_);
   for (const int value : {8, 2, 0, 0, 0}) header.push_back(static_cast<std::byte>(value));  // 8 bits, RGB
-  append_chunk(png, "IHDR", header);
-  append_chunk(png, "tEXt", bytes_of(kWriter));
+  append_png_chunk(png, "IHDR", header);
+  append_png_chunk(png, "tEXt", bytes_of(kWriter));
   constexpr std::byte kPerceptual{0};
-  if (!view_) append_chunk(png, "sRGB", BytesView(&kPerceptual, 1));
-  append_chunk(png, "IDAT", stream);
-  append_chunk(png, "IEND", {});
+  if (!view_) append_png_chunk(png, "sRGB", BytesView(&kPerceptual, 1));
+  append_png_chunk(png, "IDAT", stream);
+  append_png_chunk(png, "IEND", {});
   return png;
 }
 

@@ -28,6 +28,9 @@ constexpr std::array<SlotPlace, kSlotCount> kSlotPlaces{{
     {Slot::clearcoat_normal, "extensions", "KHR_materials_clearcoat", "clearcoatNormalTexture"},
     {Slot::sheen_color, "extensions", "KHR_materials_sheen", "sheenColorTexture"},
     {Slot::sheen_roughness, "extensions", "KHR_materials_sheen", "sheenRoughnessTexture"},
+    {Slot::anisotropy, "extensions", "KHR_materials_anisotropy", "anisotropyTexture"},
+    {Slot::iridescence, "extensions", "KHR_materials_iridescence", "iridescenceTexture"},
+    {Slot::iridescence_thickness, "extensions", "KHR_materials_iridescence", "iridescenceThicknessTexture"},
 }};
 
 const Json* slot_info(const Json& material, const SlotPlace& place) {
@@ -172,6 +175,14 @@ void set_extensions(const Json& extensions, Material& m) {
   const Json& sheen = extensions["KHR_materials_sheen"];
   m.sheen_color = color_of(sheen["sheenColorFactor"]);
   m.sheen_roughness = float_of(sheen["sheenRoughnessFactor"]);
+  const Json& anisotropy = extensions["KHR_materials_anisotropy"];
+  m.anisotropy = float_of(anisotropy["anisotropyStrength"]);
+  m.anisotropy_rotation = float_of(anisotropy["anisotropyRotation"]);
+  const Json& film = extensions["KHR_materials_iridescence"];
+  m.iridescence = float_of(film["iridescenceFactor"]);
+  m.iridescence_ior = float_of(film["iridescenceIor"]);
+  m.iridescence_minimum = float_of(film["iridescenceThicknessMinimum"]);
+  m.iridescence_maximum = float_of(film["iridescenceThicknessMaximum"]);
   m.emissive_strength = float_of(extensions["KHR_materials_emissive_strength"]["emissiveStrength"]);
 }
 

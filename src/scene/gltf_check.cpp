@@ -11,7 +11,7 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 14> kSupportedExtensions = {
+constexpr std::array<std::string_view, 17> kSupportedExtensions = {
     "KHR_lights_punctual",
     "KHR_materials_ior",
     "KHR_materials_transmission",
@@ -19,6 +19,9 @@ constexpr std::array<std::string_view, 14> kSupportedExtensions = {
     "KHR_materials_specular",
     "KHR_materials_clearcoat",
     "KHR_materials_sheen",
+    "KHR_materials_anisotropy",
+    "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",  // converted
     "KHR_materials_unlit",
     "KHR_materials_variants",
     "KHR_texture_transform",

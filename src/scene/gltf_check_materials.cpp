@@ -33,7 +33,7 @@ void check_image(const JsonView& root, const JsonView& image) {
 }  // namespace
 
 void check_materials(const JsonView& root) {
-  const Schema& schema = schema_of(Section::materials);
+  const Schema& schema = file_material_schema();
   for_each_object(root, "materials",
                   [&](const JsonView& material, std::size_t) { check_slots(root, material, schema); });
   for_each_object(root, "textures", [&](const JsonView& texture, std::size_t) {

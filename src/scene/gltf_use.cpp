@@ -76,7 +76,7 @@ void mark_uv(const Json& info, std::array<bool, 2>& uv) {
 std::vector<std::array<bool, 2>> uv_sets(const Json& materials) {
   std::vector<std::array<bool, 2>> sets(materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i)
-    for_each_slot(schema_of(Section::materials), materials[i], [&](const Json& info) { mark_uv(info, sets[i]); });
+    for_each_slot(file_material_schema(), materials[i], [&](const Json& info) { mark_uv(info, sets[i]); });
   return sets;
 }
 
@@ -140,7 +140,7 @@ class Reach {
     const Json& materials = gltf_array(gltf_, Section::materials);
     for (std::size_t m = 0; m < materials.size(); ++m)
       if (use_.materials[m])
-        for_each_slot(schema_of(Section::materials), materials[m],
+        for_each_slot(file_material_schema(), materials[m],
                       [&](const Json& info) { (void)mark(info, "index", use_.textures); });
     const Json& textures = gltf_array(gltf_, Section::textures);
     for (std::size_t t = 0; t < textures.size(); ++t) {

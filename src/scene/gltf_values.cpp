@@ -229,7 +229,8 @@ void check_section(Json& gltf, Section section, const GltfUse& use, std::string_
     Json& thing = (*things)[i];
     const bool is_used = use.of(section)[i];
     if (section == Section::materials) split_emission(thing, pointer, file, warnings);
-    ValueCheck(is_used, file, warnings).object(schema_of(section), thing, pointer);
+    const Schema& schema = section == Section::materials ? file_material_schema() : schema_of(section);
+    ValueCheck(is_used, file, warnings).object(schema, thing, pointer);
     if (section == Section::nodes && is_used) check_transform(thing, pointer, file);
     if (section == Section::lights) fit_cone(thing, pointer, is_used, file, warnings);
   }

@@ -4,6 +4,7 @@
 #include "scene/gltf_json.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_source.h"
+#include "scene/gltf_specular_glossiness.h"
 #include "scene/gltf_use.h"
 #include "scene/gltf_values.h"
 #include "scene/import_memory.h"
@@ -120,6 +121,7 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   auto buffers = load_buffers(source, share);
   imported.images = load_images(source, buffers, use.images, imported.warnings);
   drop_missing_images(imported.images, use, source.json);
+  convert_specular_glossiness(source.json, imported.images, source.file, imported.warnings, share);
   const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
   imported.meshes = decode_meshes(model, use, source.file, imported.warnings, share);
   imported.instances = decode_instances(source.json, model, use, source.file, share);

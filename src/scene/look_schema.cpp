@@ -125,12 +125,21 @@ const Schema& material_extensions() {
   static const Schema sheen{{reals("sheenColorFactor", {0.0, 0.0, 0.0}, 0, 1),
                              optional("sheenColorTexture", plain_texture()), number("sheenRoughnessFactor", 0.0, 0, 1),
                              optional("sheenRoughnessTexture", plain_texture())}};
+  static const Schema anisotropy{{number("anisotropyStrength", 0.0, 0, 1),
+                                  number("anisotropyRotation", 0.0, -kLargest, kLargest),
+                                  optional("anisotropyTexture", plain_texture())}};
+  static const Schema iridescence{
+      {number("iridescenceFactor", 0.0, 0, 1), optional("iridescenceTexture", plain_texture()),
+       number("iridescenceIor", 1.3, 1, kLargest), number("iridescenceThicknessMinimum", 100.0, 0, kLargest),
+       number("iridescenceThicknessMaximum", 400.0, 0, kLargest),
+       optional("iridescenceThicknessTexture", plain_texture())}};
   static const Schema emissive_strength{{number("emissiveStrength", 1.0, 0, kLargest)}};
   static const Schema unlit{};
   static const Schema extensions{
       {implied("KHR_materials_ior", ior), implied("KHR_materials_transmission", transmission),
        implied("KHR_materials_volume", volume), implied("KHR_materials_specular", specular),
        implied("KHR_materials_clearcoat", clearcoat), implied("KHR_materials_sheen", sheen),
+       implied("KHR_materials_anisotropy", anisotropy), implied("KHR_materials_iridescence", iridescence),
        implied("KHR_materials_emissive_strength", emissive_strength), optional("KHR_materials_unlit", unlit)}};
   return extensions;
 }
@@ -277,6 +286,25 @@ const Schema& extensions_schema() {
   static const Schema variants{{{.key = "variants", .kind = FieldKind::texts, .fallback = {}}}};
   static const Schema extensions = wrapped("KHR_materials_variants", variants, false);
   return extensions;
+}
+
+const Schema& file_material_schema() {
+  static const Schema specular_glossiness{
+      {reals("diffuseFactor", {1.0, 1.0, 1.0, 1.0}, 0, 1), optional("diffuseTexture", plain_texture()),
+       reals("specularFactor", {1.0, 1.0, 1.0}, 0, 1), number("glossinessFactor", 1.0, 0, 1),
+       optional("specularGlossinessTexture", plain_texture())}};
+  static const Schema extensions = [] {
+    Schema all = material_extensions();
+    all.fields.push_back(optional("KHR_materials_pbrSpecularGlossiness", specular_glossiness));
+    return all;
+  }();
+  static const Schema material = [] {
+    Schema all = material_schema();
+    for (Field& field : all.fields)
+      if (field.key == "extensions") field.inner = &extensions;
+    return all;
+  }();
+  return material;
 }
 
 const Schema& camera_schema() {

@@ -59,6 +59,8 @@ struct Schema {
 [[nodiscard]] const Schema& scene_schema();       // /scene
 [[nodiscard]] const Schema& extensions_schema();  // /extensions
 [[nodiscard]] const Schema& camera_schema();      // an entry of glTF's cameras
+/// A material of a file: with what is converted before it becomes one of a look document.
+[[nodiscard]] const Schema& file_material_schema();
 
 /// A number field with this lower bound must be above zero.
 inline constexpr double kAboveZero = 1e-30;

@@ -48,6 +48,7 @@ enum class Slot : std::uint8_t {
   base_color, metallic_roughness, normal, occlusion, emissive,
   transmission, thickness, specular, specular_color,
   clearcoat, clearcoat_roughness, clearcoat_normal, sheen_color, sheen_roughness,
+  anisotropy, iridescence, iridescence_thickness,
   count
 };
 inline constexpr std::size_t kSlotCount = static_cast<std::size_t>(Slot::count);
@@ -78,6 +79,10 @@ struct Material {
   float clearcoat = 0, clearcoat_roughness = 0, clearcoat_normal_scale = 1;
   Color sheen_color{0, 0, 0};
   float sheen_roughness = 0;
+  float anisotropy = 0;           // anisotropyStrength
+  float anisotropy_rotation = 0;  // radians, counter-clockwise from the tangent
+  float iridescence = 0, iridescence_ior = 1.3F;
+  float iridescence_minimum = 100, iridescence_maximum = 400;  // thickness of the film, nanometres
 
   // extras.relook, model blinn-phong: coefficients multiply the base colour (ambient, diffuse) or the light (specular).
   Color phong_ambient{1, 1, 1}, phong_diffuse{1, 1, 1}, phong_specular{0.5F, 0.5F, 0.5F};

@@ -32,14 +32,16 @@ SurfaceOptics metallic_roughness_optics(const Material& m) {
   const bool has_metal = m.metallic * rough_max.b > 0;
   const bool has_dielectric = m.metallic * rough_min.b < 1;
   const bool has_specular = m.specular * texture_range(m.slot(Slot::specular)).second.a > 0;
-  optics.reflects = m.roughness * rough_min.g < kMirrorThreshold && (has_metal || has_specular);
+  // A film reflects where what it lies on does not.
+  const bool has_film = m.iridescence * texture_range(m.slot(Slot::iridescence)).second.r > 0;
+  optics.reflects = m.roughness * rough_min.g < kMirrorThreshold && (has_metal || has_specular || has_film);
   optics.coat_reflects =
       m.clearcoat * texture_range(m.slot(Slot::clearcoat)).second.r > 0 &&
       m.clearcoat_roughness * texture_range(m.slot(Slot::clearcoat_roughness)).first.g < kMirrorThreshold;
   optics.refracts = m.transmission * texture_range(m.slot(Slot::transmission)).second.r > 0 && has_dielectric;
   optics.volume = optics.refracts && m.thickness > 0;
   optics.bent = optics.volume;
-  optics.dielectric_cut = optics.refracts && !has_metal;
+  optics.dielectric_cut = optics.refracts && !has_metal && !has_film;
   return optics;
 }
 

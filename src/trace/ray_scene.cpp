@@ -143,9 +143,12 @@ void RayScene::set_material(RayObject& object, std::shared_ptr<const Material> m
       const TextureSlot& slot = object.material->slot(which);
       return slot.kind != TextureKind::none && slot.mapping == Mapping::uv && slot.texcoord == set;
     };
+    const TextureSlot& brush = object.material->slot(Slot::anisotropy);
+    const bool is_brushed = object.material->anisotropy > 0 && brush.mapping == Mapping::uv && brush.texcoord == set;
     const bool has_all = !mesh.normals.empty() && mesh.tangents.empty() && !mesh.uv[set].empty();
     object.tangents[set] =
-        has_all && (needs(Slot::normal) || needs(Slot::clearcoat_normal)) ? tangents_of(object.mesh, set) : nullptr;
+        has_all && (is_brushed || needs(Slot::normal) || needs(Slot::clearcoat_normal)) ? tangents_of(object.mesh, set)
+                                                                                        : nullptr;
   }
 }
 

@@ -16,7 +16,7 @@ namespace relook {
 /// One object, ready for rays.
 struct RayObject {
   std::shared_ptr<const Mesh> mesh;                               // deformed and displaced, if the object is
-  std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: where a normal map needs derived ones
+  std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: derived where a map needs them
   std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
   Transform to_world;
   Imath::M33f normal_to_world;  // inverse transpose of the linear part, not normalised

@@ -158,6 +158,8 @@ def extended():
     coat = gltf.add_material("Coat", (0.5, 0.2, 0.1), 1, 0.1, extensions={
         "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.1},
         "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 0], "sheenRoughnessFactor": 0.5},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.6, "anisotropyRotation": 1},
+        "KHR_materials_iridescence": {"iridescenceFactor": 1, "iridescenceIor": 1.6, "iridescenceThicknessMaximum": 500},
         "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [1, 0.5, 1]},
         "KHR_materials_emissive_strength": {"emissiveStrength": 3}})
     flat = gltf.add_material("Flat", (0, 1, 0), extensions={"KHR_materials_unlit": {}})

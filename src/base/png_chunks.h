@@ -1,0 +1,17 @@
+// Chunks of PNG files (ISO/IEC 15948 section 5.3), for those who write them.
+#pragma once
+#include <cstdint>
+#include <string_view>
+
+#include "base/files.h"
+
+namespace relook {
+
+inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+
+/// Big-endian.
+void append_png_number(Bytes& out, std::uint32_t value);
+/// Length, type, data and checksum. `type`: four letters.
+void append_png_chunk(Bytes& out, std::string_view type, BytesView data);
+
+}  // namespace relook
