@@ -6,6 +6,7 @@
 
 #include "scene/gltf_check.h"
 #include "scene/gltf_json.h"
+#include "scene/gltf_textures.h"
 
 namespace relook {
 namespace {
@@ -158,6 +159,9 @@ void check_materials(const JsonView& root) {
                   [&](const JsonView& material, std::size_t) { check_material(root, material, rules); });
   for_each_object(root, "textures", [&](const JsonView& texture, std::size_t) {
     (void)optional_reference(texture, "source", array_size(root, "images"), "image");
+    for (const std::string_view name : kTextureSources)
+      if (const auto other = extension(texture, name))
+        (void)optional_reference(*other, "source", array_size(root, "images"), "image");
     (void)optional_reference(texture, "sampler", array_size(root, "samplers"), "sampler");
   });
   for_each_object(root, "samplers", [&](const JsonView& sampler, std::size_t) { check_sampler(sampler); });

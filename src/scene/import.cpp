@@ -4,6 +4,8 @@
 #include "scene/gltf_json.h"
 #include "scene/gltf_model.h"
 #include "scene/gltf_source.h"
+#include "scene/gltf_textures.h"
+#include "scene/gltf_unpack.h"
 #include "scene/import_memory.h"
 
 namespace relook {
@@ -67,11 +69,15 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   ImportShare share;  // of what is held until the import is done; then its result is counted
   auto buffers = load_buffers(source, share);
   imported.images = load_images(source, buffers);
-  const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
+  GltfModel model = parse_model(source.json, std::move(buffers), source.file);
+  const JsonView root(source.json, source.file);
+  unpack_draco(root, model, imported.warnings, share);
+  unpack_meshopt(root, model, accessors_of_scene(root, model), imported.warnings, share);
   imported.meshes = decode_meshes(model, source.file, imported.warnings, share);
   imported.instances = decode_instances(source.json, model, source.file, share);
   imported.inverse_binds = decode_skins(source.json, model, source.file, imported.warnings, share);
   imported.gltf = std::move(source.json);
+  resolve_texture_sources(imported.gltf, imported.images, imported.warnings);
   drop_data_uris(imported.gltf);
   make_matrices_affine(imported.gltf);
   return imported;
