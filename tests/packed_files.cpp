@@ -24,7 +24,10 @@ std::string draco_mesh(const std::vector<std::uint8_t>& indices, std::size_t poi
   add_varint(out, counts.faces == UINT64_MAX ? indices.size() / 3 : counts.faces);
   add_varint(out, counts.points == UINT64_MAX ? points : counts.points);
   add_byte(out, 1);  // indices as they are
-  for (const std::uint8_t index : indices) add_byte(out, index);
+  for (const std::uint8_t index : indices) {
+    add_byte(out, index);
+    if (points >= 256) add_byte(out, 0);  // two bytes each then
+  }
   add_byte(out, 1);  // one decoder for all attributes
   add_varint(out, columns.size());
   for (const DracoColumn& column : columns) {
@@ -65,8 +68,12 @@ std::string meshopt_indices(const std::vector<std::uint32_t>& indices) {
 std::size_t add_meshopt_view(SceneFile& file, const std::string& packed, std::size_t count, std::size_t stride,
                              const char* mode, const char* filter, const char* name) {
   file.binary.resize((file.binary.size() + 3) / 4 * 4, '\0');
-  const Json extension = {{"buffer", 0},          {"byteOffset", file.binary.size()}, {"byteLength", packed.size()},
-                          {"byteStride", stride}, {"count", count},                   {"mode", mode},
+  const Json extension = {{"buffer", 0},
+                          {"byteOffset", file.binary.size()},
+                          {"byteLength", packed.size()},
+                          {"byteStride", stride},
+                          {"count", count},
+                          {"mode", mode},
                           {"filter", filter}};
   file.binary += packed;
   const std::size_t bytes = count * stride;

@@ -29,7 +29,7 @@ struct DracoCounts {
   std::uint8_t major = 2, minor = 2, kind = 1, method = 0;
 };
 
-/// Draco bitstream 2.2, sequential method, nothing compressed: fewer than 128 points, triangles and attributes.
+/// Draco bitstream 2.2, sequential method, nothing compressed: fewer than 2^16 points.
 [[nodiscard]] std::string draco_mesh(const std::vector<std::uint8_t>& indices, std::size_t points,
                                      const std::vector<DracoColumn>& columns, DracoCounts counts = {});
 

@@ -17,11 +17,11 @@ constexpr std::string_view kExtension = "KHR_draco_mesh_compression";
 
 /// A primitive that names the Draco data.
 struct DracoUse {
-  JsonView place;      // of the primitive
-  JsonView packed;     // of its extension
+  JsonView place;   // of the primitive
+  JsonView packed;  // of its extension
   GltfPrimitive* primitive;
   std::map<std::string, std::uint32_t> attributes;  // that the primitive has, too, and relook may read
-  std::size_t indices;  // accessor
+  std::size_t indices;                              // accessor
 };
 
 /// A file may name attributes of its own, of any type.
@@ -66,8 +66,8 @@ DracoLimits limits_of(const std::vector<DracoUse>& uses, const GltfModel& model)
   DracoLimits limits;
   for (const DracoUse& use : uses) {
     limits.faces = std::max(limits.faces, declared_faces(use, model));
-    for (const auto& [name, id] : use.attributes)
-      limits.points = std::max<std::uint64_t>(limits.points, model.accessors[use.primitive->attributes.at(name)].count);
+    for (const auto& [name, accessor] : use.primitive->attributes)
+      limits.points = std::max<std::uint64_t>(limits.points, model.accessors[accessor].count);
   }
   return limits;
 }
@@ -96,10 +96,11 @@ class DracoSource {
       accessor = column(id, model_.accessors[accessor], place);
     }
     for (const auto& [name, accessor] : use.primitive->attributes)
-      if (model_.accessors[accessor].count != mesh_.points())
-        use.place.at("attributes").at(name).fail("has " + std::to_string(model_.accessors[accessor].count) +
-                                                 " elements, the Draco data of the primitive has " +
-                                                 std::to_string(mesh_.points()) + " vertices");
+      if (is_readable(name, model_.accessors[accessor]) && model_.accessors[accessor].count != mesh_.points())
+        use.place.at("attributes")
+            .at(name)
+            .fail("has " + std::to_string(model_.accessors[accessor].count) +
+                  " elements, the Draco data of the primitive has " + std::to_string(mesh_.points()) + " vertices");
     use.primitive->indices = indices(use.packed);
     use.primitive->mode = 4;
   }

@@ -13,9 +13,8 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kExtensions{"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
-const std::map<std::string_view, MeshoptMode> kModes{{"ATTRIBUTES", MeshoptMode::attributes},
-                                                     {"TRIANGLES", MeshoptMode::triangles},
-                                                     {"INDICES", MeshoptMode::indices}};
+const std::map<std::string_view, MeshoptMode> kModes{
+    {"ATTRIBUTES", MeshoptMode::attributes}, {"TRIANGLES", MeshoptMode::triangles}, {"INDICES", MeshoptMode::indices}};
 const std::map<std::string_view, MeshoptFilter> kFilters{{"NONE", MeshoptFilter::none},
                                                          {"OCTAHEDRAL", MeshoptFilter::octahedral},
                                                          {"QUATERNION", MeshoptFilter::quaternion},
@@ -35,7 +34,7 @@ Codec codec_of(MeshoptMode mode) {
 struct PackedView {
   JsonView place;  // of the extension
   MeshoptStream stream;
-  std::size_t length = 0;  // of the view, bytes
+  std::size_t length = 0, stride = 0;  // of the view, bytes; stride 0: none
 };
 
 void check_stride(const PackedView& packed) {
@@ -43,6 +42,8 @@ void check_stride(const PackedView& packed) {
   const JsonView place = packed.place.at("byteStride");
   if (mode == MeshoptMode::attributes) {
     if (stride % 4 != 0) place.fail("must be a multiple of 4");
+    if (packed.stride != 0 && packed.stride != stride)
+      place.fail("is " + std::to_string(stride) + ", that of the buffer view is " + std::to_string(packed.stride));
   } else if (stride != 2 && stride != 4) {
     place.fail("indices have 2 or 4 bytes");
   }
@@ -63,9 +64,8 @@ void check_size(const PackedView& packed) {
     packed.place.fail("unpacks to " + std::to_string(unpacked) + " bytes, its buffer view has " +
                       std::to_string(packed.length));
   constexpr std::uint64_t kMostGrowth = 64, kIndicesPerByte = 3;
-  const std::uint64_t most = stream.mode == MeshoptMode::attributes
-                                 ? kMostGrowth * stream.bytes.size() / stream.stride
-                                 : kIndicesPerByte * stream.bytes.size();
+  const std::uint64_t most = stream.mode == MeshoptMode::attributes ? kMostGrowth * stream.bytes.size() / stream.stride
+                                                                    : kIndicesPerByte * stream.bytes.size();
   if (stream.count > most)
     packed.place.at("count").fail(std::to_string(stream.count) + " elements do not fit " +
                                   std::to_string(stream.bytes.size()) + " bytes");
@@ -99,7 +99,7 @@ std::span<const unsigned char> packed_bytes(const GltfModel& model, const JsonVi
 void unpack_view(const JsonView& place, std::size_t number, GltfModel& model, std::vector<std::string>& warnings,
                  ImportShare& share) {
   GltfBufferView& view = model.views[number];
-  PackedView packed{place, {packed_bytes(model, place)}, view.length};
+  PackedView packed{place, {packed_bytes(model, place)}, view.length, view.stride};
   if (const std::string part = newer_part(place, packed.stream.bytes); !part.empty()) {
     if (model.buffers[view.buffer].empty()) place.fail(part + "; " + std::string(kUnpackCommand));
     warnings.push_back(place.pointer() + ": " + part + ": the uncompressed data of the buffer view is read");

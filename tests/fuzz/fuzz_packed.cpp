@@ -51,8 +51,12 @@ void add_meshopt(SceneFile& file, std::span<const std::uint8_t> choices, std::si
   const std::size_t mode = choices[1] % kModes.size();
   const std::size_t count = choices[2] + std::size_t{choices[3]} * 256 + 1;
   const std::size_t stride = mode == 0 ? choices[4] : std::size_t{2} << (choices[4] & 1U);
-  const Json packed = {{"buffer", 0},         {"byteOffset", data},      {"byteLength", data_bytes},
-                       {"byteStride", stride}, {"count", count},          {"mode", kModes[mode]},
+  const Json packed = {{"buffer", 0},
+                       {"byteOffset", data},
+                       {"byteLength", data_bytes},
+                       {"byteStride", stride},
+                       {"count", count},
+                       {"mode", kModes[mode]},
                        {"filter", kFilters[choices[5] % kFilters.size()]}};
   Json view = {{"buffer", 1}, {"byteOffset", 0}, {"byteLength", std::max<std::size_t>(count * stride, 1)}};
   if (mode == 0) view["byteStride"] = stride;
@@ -63,8 +67,8 @@ void add_meshopt(SceneFile& file, std::span<const std::uint8_t> choices, std::si
   Json primitive = {{"attributes", Json::object()}};
   if (mode == 0) {
     const bool is_short = stride < 12;
-    primitive["attributes"]["POSITION"] = file.add_accessor(index, is_short ? 5122 : 5126, "VEC3", count,
-                                                            {{"normalized", is_short}});
+    primitive["attributes"]["POSITION"] =
+        file.add_accessor(index, is_short ? 5122 : 5126, "VEC3", count, {{"normalized", is_short}});
   } else {
     primitive["attributes"]["POSITION"] = file.floats({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, "VEC3", 3);
     primitive["indices"] = file.add_accessor(index, stride == 2 ? 5123 : 5125, "SCALAR", count);

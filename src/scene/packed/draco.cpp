@@ -66,7 +66,8 @@ class Gate {
     return points <= limits_.points || refuse(points, "vertices", limits_.points);
   }
   bool refuse(std::uint64_t count, const char* what, std::uint64_t most) {
-    error_ = "the Draco data has " + std::to_string(count) + " " + what + ", its accessors have " + std::to_string(most);
+    error_ =
+        "the Draco data has " + std::to_string(count) + " " + what + ", its accessors have " + std::to_string(most);
     return false;
   }
 
