@@ -135,7 +135,8 @@ void add_system(Reach& reach) {
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
   for (const fs::path& folder : {program, program.parent_path() / "lib" / "relook"}) {
     readable.push_back(folder);
-    for (const char* module : {"librelook_images.so", "librelook_views.so"}) readable.push_back(folder / module);  // links
+    for (const char* module : {"librelook_images.so", "librelook_meshes.so", "librelook_views.so"})
+      readable.push_back(folder / module);  // links
   }
 }
 

@@ -8,7 +8,7 @@ set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:?usage: sh tests/fuzz.sh SECONDS|keep [TARGET...]}
 shift
-targets="${*:-scene patch journal cache image notes replay}"
+targets="${*:-scene packed patch journal cache image notes replay}"
 . scenes/setup.sh
 packages="$packages clang-16 libclang-rt-16-dev"
 install_packages

@@ -8,10 +8,11 @@
 
 namespace relook {
 
-/// A glTF file in the making: JSON plus one buffer.
+/// A glTF file in the making: JSON plus one buffer, and those that are declared alone.
 struct SceneFile {
   Json gltf = {{"asset", {{"version", "2.0"}}}};
   std::string binary;
+  Json other_buffers = Json::array();
 
   template <class Number>
   std::size_t add_view(const std::vector<Number>& values, std::size_t stride = 0) {
@@ -36,6 +37,7 @@ struct SceneFile {
   [[nodiscard]] std::string glb() const {
     Json document = gltf;
     if (!binary.empty()) document["buffers"] = {{{"byteLength", binary.size()}}};
+    for (const Json& buffer : other_buffers) document["buffers"].push_back(buffer);
     std::string text = document.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string chunk = binary;

@@ -226,7 +226,7 @@ TEST(Image, every_cut_of_a_jpeg_is_refused) {
 TEST(Image, other_formats_are_named_as_such) {
   for (const std::string bytes : {"", "GIF89a", "RIFF....WEBPVP8 ", "II*\0", "<svg>", "\x89PNG"})
     EXPECT_EQ(refusal(bytes),
-              "scene: /images/0: cannot decode the image: it is not a PNG, JPEG, Radiance HDR or OpenEXR image");
+              "scene: /images/0: cannot decode the image: it is not a PNG, JPEG, WebP, Radiance HDR or OpenEXR image");
 }
 
 TEST(Image, sizes_are_checked_before_anything_is_decoded) {

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "scene/image_stream.h"
 #include "scene/look_schema.h"
 
 namespace relook {
@@ -95,6 +96,9 @@ std::shared_ptr<const TexturePyramid> pyramid_of(const CompileContext& context, 
   if (!context.document.assets->images.contains(content))
     throw LookError(context.file, "/images/" + escape_token(image),
                     "this image has no bytes (unknown content \"" + content + "\")");
+  const auto& bytes = context.document.assets->images.at(content).bytes;
+  if (bytes && is_ktx2(*bytes))
+    throw LookError(context.file, "/images/" + escape_token(image), std::string(kNoKtxImages));
   return context.pyramids.get(*context.document.assets, content, is_color, context.file, pointer);
 }
 

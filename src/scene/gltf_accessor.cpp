@@ -6,19 +6,6 @@
 namespace relook {
 namespace {
 
-std::size_t component_bytes(Component component) {
-  switch (component) {
-    case Component::i8:
-    case Component::u8:
-      return 1;
-    case Component::i16:
-    case Component::u16:
-      return 2;
-    default:
-      return 4;
-  }
-}
-
 const unsigned char* view_data(const GltfModel& model, std::size_t view, std::size_t offset) {
   return model.buffers[model.views[view].buffer].data() + model.views[view].offset + offset;
 }
@@ -94,6 +81,19 @@ std::uint32_t sparse_index(const GltfModel& model, const GltfAccessor& accessor,
 }
 
 }  // namespace
+
+std::size_t component_bytes(Component component) {
+  switch (component) {
+    case Component::i8:
+    case Component::u8:
+      return 1;
+    case Component::i16:
+    case Component::u16:
+      return 2;
+    default:
+      return 4;
+  }
+}
 
 std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor) {
   std::vector<float> values(accessor.count * accessor.width, 0.0F);

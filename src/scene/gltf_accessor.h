@@ -8,6 +8,9 @@
 
 namespace relook {
 
+/// 1, 2 or 4.
+[[nodiscard]] std::size_t component_bytes(Component component);
+
 /// All elements, `accessor.width` floats each; integers converted, normalized ones divided. May contain non-finite
 /// values. Requires: no matrix.
 [[nodiscard]] std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor);

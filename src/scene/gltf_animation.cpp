@@ -10,6 +10,7 @@
 #include "scene/gltf_check.h"
 #include "scene/gltf_json.h"
 #include "scene/gltf_source.h"
+#include "scene/gltf_unpack.h"
 
 namespace relook {
 namespace {
@@ -109,8 +110,9 @@ std::vector<Animation> import_animations(const std::filesystem::path& path) {
   check_document(source.json, source.file, unused);
   ImportShare share;
   auto buffers = load_buffers(source, share);
-  const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
+  GltfModel model = parse_model(source.json, std::move(buffers), source.file);
   const JsonView root(source.json, source.file);
+  unpack_meshopt(root, model, accessors_of_animations(root, model), unused, share);
   std::vector<Animation> animations;
   for_each_object(root, "animations", [&](const JsonView& view, std::size_t i) {
     animations.push_back(read_animation(root, model, view, i, share));

@@ -11,7 +11,7 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 17> kSupportedExtensions = {
+constexpr std::array<std::string_view, 22> kSupportedExtensions = {
     "KHR_lights_punctual",
     "KHR_materials_ior",
     "KHR_materials_transmission",
@@ -28,6 +28,11 @@ constexpr std::array<std::string_view, 17> kSupportedExtensions = {
     "KHR_materials_emissive_strength",
     "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",
+    "KHR_draco_mesh_compression",
+    "EXT_meshopt_compression",
+    "KHR_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_texture_basisu",  // its images are refused where they are decoded
     "KHR_animation_pointer",  // read for journals alone
 };
 constexpr std::string_view kVisibilityExtension = "KHR_node_visibility";

@@ -20,5 +20,10 @@ void check_meshes(const JsonView& root);
 void check_nodes(const JsonView& root);      // nodes, scenes, cameras
 void check_materials(const JsonView& root);  // materials, textures, samplers, images, variants
 void check_lights(const JsonView& root);
+void check_meshopt_view(const JsonView& root, const JsonView& view);
+void check_draco_primitive(const JsonView& root, const JsonView& primitive);
+
+/// Per accessor: whether a primitive has it from Draco data, so that it needs no buffer view.
+[[nodiscard]] std::vector<bool> accessors_of_draco(const JsonView& root);
 
 }  // namespace relook

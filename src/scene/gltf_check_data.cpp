@@ -5,6 +5,7 @@
 
 #include "scene/gltf_check.h"
 #include "scene/gltf_json.h"
+#include "scene/gltf_unpack.h"
 
 namespace relook {
 namespace {
@@ -86,7 +87,8 @@ void check_sparse(const JsonView& root, const JsonView& accessor, std::int64_t c
   check_part(root, values, {byte_offset(values), replaced, element, component, false});
 }
 
-void check_accessor(const JsonView& root, const JsonView& accessor) {
+/// `is_of_draco`: what is there without a buffer view is bounded where it is decoded.
+void check_accessor(const JsonView& root, const JsonView& accessor, bool is_of_draco) {
   const std::int64_t component = component_type(accessor, false);
   const ElementSize element = element_size(accessor, component);
   const std::int64_t count = accessor.at("count").integer(1, kMostElements);
@@ -97,7 +99,7 @@ void check_accessor(const JsonView& root, const JsonView& accessor) {
     check_part(root, accessor, {byte_offset(accessor), count, element, component, true});
   else if (accessor.has("byteOffset"))
     accessor.at("byteOffset").fail("a byte offset without a buffer view");
-  else if (count > kMostZeroElements)
+  else if (count > kMostZeroElements && !is_of_draco)
     accessor.at("count").fail("at most " + std::to_string(kMostZeroElements) + " elements without a buffer view");
   check_sparse(root, accessor, count, component, element);
 }
@@ -114,6 +116,7 @@ void check_buffer_view(const JsonView& root, const JsonView& view) {
     if (stride->integer(4, 252) % 4 != 0) stride->fail("must be a multiple of 4");
     if (stride->integer(4, 252) > length) stride->fail("is larger than the buffer view");
   }
+  check_meshopt_view(root, view);
 }
 
 /// POSITION, NORMAL, ...: all accessors of a primitive have the same count.
@@ -132,11 +135,15 @@ void check_primitive(const JsonView& root, const JsonView& primitive) {
   }
   if (const auto indices = optional_reference(primitive, "indices", accessor_count, "accessor")) {
     const JsonView accessor = root.at("accessors").at(*indices);
-    if (!accessor.has("bufferView")) primitive.at("indices").fail("indices need a buffer view");
-    const JsonView view =
-        root.at("bufferViews").at(static_cast<std::size_t>(accessor.at("bufferView").integer(0, INT64_MAX)));
-    if (view.has("byteStride")) primitive.at("indices").fail("the buffer view of indices may not have a byteStride");
+    if (!accessor.has("bufferView") && !draco_extension(primitive))
+      primitive.at("indices").fail("indices need a buffer view");
+    if (accessor.has("bufferView")) {
+      const JsonView view =
+          root.at("bufferViews").at(static_cast<std::size_t>(accessor.at("bufferView").integer(0, INT64_MAX)));
+      if (view.has("byteStride")) primitive.at("indices").fail("the buffer view of indices may not have a byteStride");
+    }
   }
+  check_draco_primitive(root, primitive);
   if (const auto mode = member(primitive, "mode")) (void)mode->integer(0, 6);
   (void)optional_reference(primitive, "material", array_size(root, "materials"), "material");
   for_each(primitive, "targets", [&](const JsonView& target, std::size_t) {
@@ -172,7 +179,10 @@ void check_data_layout(const JsonView& root) {
     if (const auto uri = member(buffer, "uri")) (void)uri->text();
   });
   for_each_object(root, "bufferViews", [&](const JsonView& view, std::size_t) { check_buffer_view(root, view); });
-  for_each_object(root, "accessors", [&](const JsonView& accessor, std::size_t) { check_accessor(root, accessor); });
+  const std::vector<bool> are_of_draco = accessors_of_draco(root);
+  for_each_object(root, "accessors", [&](const JsonView& accessor, std::size_t i) {
+    check_accessor(root, accessor, are_of_draco[i]);
+  });
 }
 
 void check_meshes(const JsonView& root) {

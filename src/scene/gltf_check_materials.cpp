@@ -1,6 +1,7 @@
 // What materials, textures, images and variants refer to.
 #include "scene/gltf_check.h"
 #include "scene/gltf_json.h"
+#include "scene/gltf_textures.h"
 #include "scene/look_schema.h"
 
 namespace relook {
@@ -38,6 +39,9 @@ void check_materials(const JsonView& root) {
                   [&](const JsonView& material, std::size_t) { check_slots(root, material, schema); });
   for_each_object(root, "textures", [&](const JsonView& texture, std::size_t) {
     (void)optional_reference(texture, "source", array_size(root, "images"), "image");
+    for (const std::string_view name : kTextureSources)
+      if (const auto other = extension(texture, name))
+        (void)optional_reference(*other, "source", array_size(root, "images"), "image");
     (void)optional_reference(texture, "sampler", array_size(root, "samplers"), "sampler");
   });
   for_each_object(root, "samplers", [](const JsonView&, std::size_t) {});

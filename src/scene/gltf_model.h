@@ -56,7 +56,8 @@ struct GltfModel {
   std::vector<std::vector<GltfPrimitive>> meshes;
 };
 
-/// Lets tinygltf parse the geometry of a checked document. It gets `buffers` from memory and sees no file.
+/// Lets tinygltf parse the geometry of a checked document. It gets `buffers` from memory and sees no file. Primitives of
+/// Draco data have no indices yet (gltf_unpack.h).
 /// Throws InputError{file, ...} with tinygltf's own words if it refuses.
 [[nodiscard]] GltfModel parse_model(const Json& gltf, std::vector<std::vector<unsigned char>> buffers,
                                     std::string_view file);

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "scene/gltf_model.h"
+#include "scene/gltf_unpack.h"
 
 namespace relook {
 namespace {
@@ -48,9 +49,14 @@ Json geometry_document(const Json& gltf, const BufferTable& buffers) {
                  {"values", reduced((*sparse)["values"], {"bufferView", "byteOffset"})}};
   document["meshes"] = Json::array();
   if (const auto meshes = gltf.find("meshes"); meshes != gltf.end())
-    for (const Json& mesh : *meshes)
-      document["meshes"].push_back(
-          {{"primitives", reduced_array(mesh, "primitives", {"attributes", "indices", "mode", "targets"})}});
+    for (const Json& mesh : *meshes) {
+      Json primitives = Json::array();
+      for (const Json& primitive : mesh["primitives"])  // tinygltf refuses indices without a view, which Draco data has
+        primitives.push_back(draco_extension(JsonView(primitive, ""))
+                                 ? reduced(primitive, {"attributes", "mode", "targets"})
+                                 : reduced(primitive, {"attributes", "indices", "mode", "targets"}));
+      document["meshes"].push_back({{"primitives", std::move(primitives)}});
+    }
   return document;
 }
 

@@ -145,9 +145,17 @@ class Reach {
     const Json& textures = gltf_array(gltf_, Section::textures);
     for (std::size_t t = 0; t < textures.size(); ++t) {
       if (!use_.textures[t]) continue;
-      (void)mark(textures[t], "source", use_.images);
+      mark_source(textures[t]);
       (void)mark(textures[t], "sampler", use_.samplers);
     }
+  }
+
+  /// The image that resolve_texture_sources() chooses.
+  void mark_source(const Json& texture) {
+    const Json& extensions = object_in(texture, "extensions");
+    for (const Json* owner : {&object_in(extensions, "EXT_texture_webp"), &texture,
+                              &object_in(extensions, "KHR_texture_basisu")})
+      if (mark(*owner, "source", use_.images) != SIZE_MAX) return;
   }
 
   const Json& gltf_;

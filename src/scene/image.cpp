@@ -27,13 +27,16 @@ std::string format_name(BytesView encoded) {
   if (text.starts_with("\xFF\xD8\xFF")) return "jpeg";
   if (text.starts_with("#?RADIANCE") || text.starts_with("#?RGBE")) return "hdr";
   if (text.starts_with("\x76\x2F\x31\x01")) return "openexr";
+  if (is_webp(encoded)) return "webp";
   return "";
 }
 
 /// More pixels than this cannot be in one byte of a format: deflate shrinks 1032 to 1 at most, and a PNG byte may hold
-/// eight pixels; Radiance runs hold 127 of a channel in two bytes; a JPEG needs a bit for each block of 64.
+/// eight pixels; Radiance runs hold 127 of a channel in two bytes; a JPEG needs a bit for each block of 64. A WebP image
+/// of one colour needs no bits for its pixels.
 std::uint64_t most_pixels_per_byte(std::string_view format) {
   if (format == "png") return 8256;
+  if (format == "webp") return kMostImagePixels;
   return format == "hdr" ? 64 : 1032;
 }
 
@@ -52,13 +55,15 @@ class OpenImage {
  public:
   OpenImage(BytesView encoded, std::string_view file, std::string_view where)
       : file_(file), where_(where), format_(format_name(encoded)) {
-    if (format_.empty()) fail("it is not a PNG, JPEG, Radiance HDR or OpenEXR image");
+    if (is_ktx2(encoded)) fail(std::string(kNoKtxImages));
+    if (format_.empty()) fail("it is not a PNG, JPEG, WebP, Radiance HDR or OpenEXR image");
     const BytesView stream = reduced(encoded);
     std::string error;
     image_ = open_image(format_.c_str(), stream, error);
     if (!image_) fail(error);
     spec_ = image_->spec();
-    check_header(stream.size() * most_pixels_per_byte(format_));
+    check_header(bounded_product(stream.size(), most_pixels_per_byte(format_)));
+    if (format_ == "webp") hold_whole();
   }
 
   [[nodiscard]] ImageHeader header() const {
@@ -143,6 +148,12 @@ class OpenImage {
     if (stream.held_bytes > 0) hold(stream.held_bytes);
     reduced_ = std::move(stream.bytes);
     return reduced_;
+  }
+  /// libwebp decodes an image as a whole: its pixels, their copy that is read in rows, and its planes.
+  void hold_whole() {
+    constexpr std::uint64_t kPixelBytes = 12;
+    const std::uint64_t bytes = std::uint64_t{header().width} * header().height * kPixelBytes;
+    if (bytes > kFewBytes) hold(bytes);
   }
   /// One such image at a time: what their decoders hold is counted once.
   void hold(std::uint64_t bytes) {

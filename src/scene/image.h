@@ -1,5 +1,5 @@
-// Decoding of PNG, JPEG, Radiance HDR and OpenEXR bytes through OpenImageIO (image_library.h): format by magic number,
-// header checked against a pixel budget before anything is decoded.
+// Decoding of PNG, JPEG, Radiance HDR, OpenEXR and WebP bytes (image_library.h): format by magic number, header checked
+// against a pixel budget before anything is decoded.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -13,6 +13,11 @@
 #include "scene/texture.h"
 
 namespace relook {
+
+/// What is said of an image of KHR_texture_basisu.
+inline constexpr std::string_view kNoKtxImages =
+    "KTX2 images (KHR_texture_basisu) are not supported; `gltf-transform ktxdecompress IN.glb OUT.glb` makes PNG images "
+    "of them";
 
 /// Largest image accepted, in pixels.
 inline constexpr std::uint64_t kMostImagePixels = std::uint64_t{1} << 28;

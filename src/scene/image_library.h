@@ -30,7 +30,8 @@ class ImageReader {
   [[nodiscard]] virtual std::string error() const = 0;
 };
 
-/// What the module exports, as relook_open_image: opens an image of the named format ("png", "jpeg", "hdr", "openexr").
+/// What the module exports, as relook_open_image: opens an image of the named format ("png", "jpeg", "hdr", "openexr",
+/// "webp").
 /// `bytes` outlives it. Null: `error` says why.
 using OpenImageReader = std::unique_ptr<ImageReader>(const char* format, std::span<const std::byte> bytes,
                                                      std::string& error);

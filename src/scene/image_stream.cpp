@@ -165,4 +165,18 @@ ImageStream jpeg_pixels(BytesView jpeg) {
   return cut_short;
 }
 
+bool is_webp(BytesView bytes) {
+  const std::string_view text = text_of(bytes);
+  return text.starts_with("RIFF") && text.size() >= 12 && text.substr(8, 4) == "WEBP";
+}
+
+bool is_animated_webp(BytesView bytes) {
+  constexpr std::size_t kFlags = 20;
+  constexpr std::byte kAnimation{2};
+  return is_webp(bytes) && bytes.size() > kFlags && text_of(bytes).substr(12, 4) == "VP8X" &&
+         (bytes[kFlags] & kAnimation) != std::byte{0};
+}
+
+bool is_ktx2(BytesView bytes) { return text_of(bytes).starts_with("\xABKTX 20\xBB\r\n\x1A\n"); }
+
 }  // namespace relook

@@ -25,4 +25,8 @@ struct ImageStream {
 /// must be whole, and an EOI marker must end the image; more than 100 scans are too many.
 [[nodiscard]] ImageStream jpeg_pixels(BytesView jpeg);
 
+[[nodiscard]] bool is_webp(BytesView bytes);
+[[nodiscard]] bool is_animated_webp(BytesView bytes);
+[[nodiscard]] bool is_ktx2(BytesView bytes);
+
 }  // namespace relook

@@ -5,6 +5,8 @@
 #include "scene/gltf_model.h"
 #include "scene/gltf_source.h"
 #include "scene/gltf_specular_glossiness.h"
+#include "scene/gltf_textures.h"
+#include "scene/gltf_unpack.h"
 #include "scene/gltf_use.h"
 #include "scene/gltf_values.h"
 #include "scene/import_memory.h"
@@ -120,9 +122,13 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   ImportShare share;  // of what is held until the import is done; then its result is counted
   auto buffers = load_buffers(source, share);
   imported.images = load_images(source, buffers, use.images, imported.warnings);
+  resolve_texture_sources(source.json, imported.images, imported.warnings);
   drop_missing_images(imported.images, use, source.json);
   convert_specular_glossiness(source.json, imported.images, source.file, imported.warnings, share);
-  const GltfModel model = parse_model(source.json, std::move(buffers), source.file);
+  GltfModel model = parse_model(source.json, std::move(buffers), source.file);
+  const JsonView root(source.json, source.file);
+  unpack_draco(root, model, imported.warnings, share);
+  unpack_meshopt(root, model, accessors_of_scene(root, model), imported.warnings, share);
   imported.meshes = decode_meshes(model, use, source.file, imported.warnings, share);
   imported.instances = decode_instances(source.json, model, use, source.file, share);
   imported.inverse_binds = decode_skins(source.json, model, source.file, imported.warnings, share);

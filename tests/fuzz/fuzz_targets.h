@@ -9,6 +9,7 @@
 namespace relook {
 
 int fuzz_scene(const std::uint8_t* data, std::size_t size);    // bytes of a .glb or .gltf
+int fuzz_packed(const std::uint8_t* data, std::size_t size);   // a compressed mesh, and what is said of it
 int fuzz_patch(const std::uint8_t* data, std::size_t size);    // text of --look
 int fuzz_journal(const std::uint8_t* data, std::size_t size);  // text of a journal
 int fuzz_cache(const std::uint8_t* data, std::size_t size);    // changes to a cache, whose hashes are mended then
@@ -28,7 +29,8 @@ struct FuzzTarget {
   int (*run)(const std::uint8_t* data, std::size_t size);
   Mutate* mutate = nullptr;  // null: bytes alone
 };
-inline constexpr std::array<FuzzTarget, 7> kFuzzTargets{{{"scene", fuzz_scene, mutate_scene},
+inline constexpr std::array<FuzzTarget, 8> kFuzzTargets{{{"scene", fuzz_scene, mutate_scene},
+                                                         {"packed", fuzz_packed},
                                                          {"patch", fuzz_patch, mutate_json_text},
                                                          {"journal", fuzz_journal, mutate_json_text},
                                                          {"cache", fuzz_cache},

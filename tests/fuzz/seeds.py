@@ -342,6 +342,26 @@ def note_files():
     yield ("run\n" + report([entry(0, verify={"pixels_compared": 2, "pixels_different": 0}, verify_percent=50)])).encode()
 
 
+# Compressed meshes ----------------------------------------------------------------------------------------------------
+def draco(indices, points, columns):
+    """The sequential method, nothing compressed. columns: (Draco's semantic, its data type, width, bytes), ids 0, 1, ..."""
+    data = b"DRACO" + bytes([2, 2, 1, 0, 0, 0, len(indices) // 3, points, 1]) + bytes(indices) + bytes([1, len(columns)])
+    data += b"".join(bytes([semantic, kind, width, 0, i]) for i, (semantic, kind, width, _) in enumerate(columns))
+    return data + bytes(len(columns)) + b"".join(column[3] for column in columns)
+
+
+def packed_files():
+    """Eight bytes that choose what the file says (fuzz_packed.cpp), then the data."""
+    corners = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5)
+    uvs = struct.pack("<8f", 0, 0, 1, 0, 0, 1, 1, 1)
+    yield bytes([1, 3, 0, 1, 0, 0, 0, 0]) + draco([0, 1, 2, 2, 1, 3], 4, [(0, 9, 3, corners)])
+    yield bytes([1, 3, 0, 1, 0, 4, 0, 0]) + draco([0, 1, 2, 2, 1, 3], 4, [(0, 9, 3, corners), (3, 9, 2, uvs)])
+    yield bytes([1, 3, 0, 1, 0, 9, 1, 0]) + draco([0, 1, 2, 2, 1, 3], 4,
+                                                  [(0, 3, 3, bytes(24)), (2, 2, 4, bytes(range(16)))])
+    yield bytes([0, 1, 2, 0, 0, 0, 0, 0]) + b"\xe1" + bytes(18)
+    yield bytes([0, 2, 2, 0, 1, 0, 1, 0]) + b"\xd1" + bytes(9)
+
+
 def numbers(seed, sizes):
     generator = random.Random(seed)
     for size in sizes:
@@ -349,7 +369,7 @@ def numbers(seed, sizes):
 
 
 def main(folder):
-    targets = {"scene": scene_files(), "patch": patch_files(), "journal": journal_files(), "image": image_files(),
+    targets = {"scene": scene_files(), "packed": packed_files(), "patch": patch_files(), "journal": journal_files(), "image": image_files(),
                "notes": note_files(), "cache": numbers(1, range(3, 24)), "replay": numbers(2, range(16, 272, 16))}
     for target, files in targets.items():
         os.makedirs(os.path.join(folder, target), exist_ok=True)

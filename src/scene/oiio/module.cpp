@@ -1,12 +1,14 @@
-// The module behind scene/image_library.h: decoding through OpenImageIO. The only file that sees it.
+// The module behind scene/image_library.h: decoding through OpenImageIO, which this file alone sees.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
 
 #include "scene/image_library.h"
+#include "scene/oiio/webp.h"
 
 namespace {
 
@@ -84,6 +86,7 @@ class OiioImage final : public relook::ImageReader {
 
 extern "C" std::unique_ptr<relook::ImageReader> relook_open_image(const char* format, std::span<const std::byte> bytes,
                                                                   std::string& error) {
+  if (format == std::string_view("webp")) return relook::open_webp(bytes, error);
   auto image = std::make_unique<OiioImage>(bytes);
   if (!image->open(format, error)) return nullptr;
   return image;
