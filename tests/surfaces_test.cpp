@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/look_warnings.h"
 #include "test_scenes.h"
 
 namespace relook {
@@ -179,6 +180,50 @@ TEST(Surfaces, what_is_scaled_to_nothing_along_one_axis_is_a_sheet) {
       }
       EXPECT_GT(covered, 3U);
     }
+}
+
+Frame lit_automatically(const SceneBuilder& scene, std::string& said) {
+  LookDocument document = scene.state().document();
+  said = add_auto_lights(document, scene.camera());
+  return rendered(SceneState(std::move(document), scene.camera(), nullptr).scene(), {1, 6});
+}
+
+TEST(Surfaces, a_closed_room_gets_a_lamp_and_an_open_one_does_not) {
+  for (const bool is_closed : {true, false}) {
+    SceneBuilder scene;
+    Mesh room = is_closed ? box_mesh(Point(2, 2, 2)) : plane_mesh(2, 1);
+    Json inside = lambert();
+    inside["doubleSided"] = true;
+    const int mesh = scene.mesh("Room", std::move(room), scene.material("Wall", inside));
+    scene.node("Room", {{"mesh", mesh}, {"translation", {0, is_closed ? 0 : -1, 0}}});
+    card(scene, "Post", 0.5F, lambert(), {{"translation", {0, 0, -1.5}}});
+    scene.look_at(Point(0, 0, 1), Point(0, 0, 0), 60, 8, 8);
+    std::string said;
+    const Frame frame = lit_automatically(scene, said);
+    EXPECT_EQ(said.find("node \"Room\"") != std::string::npos, is_closed) << said;
+    const Rgba& post = frame.pixels.at(8 * 4 + 4);
+    EXPECT_GT(post.g, 0.2F);
+    EXPECT_LT(post.g, 1.5F);
+  }
+}
+
+TEST(Surfaces, what_cannot_be_seen_is_named) {
+  SceneBuilder scene;
+  card(scene, "Line", 1, lambert(), {{"scale", {1, 0, 0}}});
+  card(scene, "Sheet", 1, lambert(), {{"scale", {0, 1, 1}}});
+  scene.light("Torch", {{"type", "spot"}, {"spot", Json::object()}}, {{"scale", {0, 0, 0}}});
+  scene.light("Bulb", {{"type", "point"}}, {{"scale", {0, 0, 0}}});
+  Json textured = lambert();
+  textured["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", scene.procedural_texture("Nothing", {{"kind", "noise"}})}};
+  scene.material("Printed", textured);
+  scene.look_at(Point(0, 0, 1), Point(0, 0, 0), 60, 8, 8);
+  LookDocument document = scene.state().document();
+  document.look["textures"]["Nothing"].erase("extras");
+  const std::vector<std::string> warnings = look_warnings(document);
+  ASSERT_EQ(warnings.size(), 3U);
+  EXPECT_NE(warnings[0].find("\"Line\""), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("\"Torch\""), std::string::npos) << warnings[1];
+  EXPECT_NE(warnings[2].find("\"Printed\""), std::string::npos) << warnings[2];
 }
 
 }  // namespace
