@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "engine/display_view.h"
 #include "help_footer.h"
 #include "needless_options.h"
 #include "scene/import_memory.h"
@@ -110,7 +111,14 @@ void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::Range(0, 4));
 }
 
+void add_exposure(CLI::App& verb, Arguments& arguments) {
+  verb.add_option("--exposure", arguments.exposure,
+                  "Previews and pages show 2^EV times the light; frames stay as they are; 0")
+      ->type_name("EV");
+}
+
 void add_frame_options(CLI::App& verb, Arguments& arguments) {
+  add_exposure(verb, arguments);
   verb.add_flag("--float", arguments.float_frames, "Write 32-bit float frames instead of half");
   verb.add_flag("--aovs", arguments.layers, "Write layers for compositing into the frames, too");
 }
@@ -128,6 +136,7 @@ void add_compare(CLI::App& app, Arguments& arguments) {
   add_inputs(compare, arguments, "A B", "Frames (.exr), or runs or folders of frames", 2, kMostCompared);
   add_output(compare, arguments, "Folder for compare.json and compare.html");
   compare.add_option("--html", arguments.html, "Page to write: tables, and pictures of the frames that differ");
+  add_exposure(compare, arguments);
   compare.add_flag("--exact", arguments.exact_only, "Only what is exact and quick: no PSNR, SSIM and FLIP");
   compare.add_option("--peak", arguments.white.value, "PSNR's peak, the linear value that is white on the display; 1");
   Thresholds& limits = arguments.thresholds;
@@ -292,6 +301,8 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
                      : raw.report == "json" ? ReportKind::json
                                             : ReportKind::html;
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
+  if (!(std::fabs(arguments.exposure) <= kMostExposure))
+    throw UsageError("--exposure: a number of stops from -100 to 100");
   take_structures({}, arguments);
   arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();

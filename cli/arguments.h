@@ -68,6 +68,7 @@ struct Arguments {
   std::optional<std::uint32_t> step;  // render
   bool float_frames = false;          // render, replay
   bool layers = false;                // render, replay: --aovs
+  double exposure = 0;                // render, replay, compare: stops, of previews
   std::optional<double> verify_percent;
   bool baseline = false;                  // replay
   bool strict = false;                    // replay: no cache with damage, even such as can be made good

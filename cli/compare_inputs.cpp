@@ -20,14 +20,14 @@ std::set<std::string> exr_files(const std::filesystem::path& folder) {
   return names;
 }
 
-Pictures pictures_of(const Frame& a, const Frame& b, const FrameComparison& comparison) {
+Pictures pictures_of(const Frame& a, const Frame& b, const FrameComparison& comparison, double exposure) {
   Frame errors = a;
   for (std::size_t i = 0; i < errors.pixels.size(); ++i) {
     float error = std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(Rgba)) == 0 ? 0.0F : 1.0F;
     if (!comparison.flip_errors.empty()) error = comparison.flip_errors[i];
     errors.pixels[i] = Rgba(3 * error, 3 * error - 1, 3 * error - 2, 1);
   }
-  return {encode_png(a), encode_png(b), encode_png(errors)};
+  return {encode_png(a, {nullptr, exposure}), encode_png(b, {nullptr, exposure}), encode_png(errors)};
 }
 
 FileComparison compared_files(const std::filesystem::path& a, const std::filesystem::path& b,
@@ -50,7 +50,7 @@ void compare_two(const std::string& name, const std::filesystem::path& a, const 
   FileComparison files = compared_files(a, b, arguments);
   const bool has_page = !arguments.html.empty() || !arguments.output.empty();
   if (has_page && files.comparison.worst && pair.pictures.size() < kMostPictures)
-    pair.pictures[name] = pictures_of(files.a, files.b, files.comparison);
+    pair.pictures[name] = pictures_of(files.a, files.b, files.comparison, arguments.exposure);
   add_frame(pair, name, std::move(files.comparison));
 }
 

@@ -28,6 +28,7 @@ std::string label_of(const StepReport& entry) {
 /// What the entry of a frame that another command has made says of the frame itself.
 void take_over(const Json& kept, StepReport& entry) {
   entry.has_overlays = kept.at("overlays").get<bool>();
+  entry.exposure = kept.at("exposure").get<double>();
   if (kept.at("verify_percent").is_number()) entry.verify_percent = kept.at("verify_percent").get<double>();
   if (const Json& verify = kept.at("verify"); verify.is_object())
     entry.verify = VerifyResult{verify.at("pixels_compared").get<std::uint64_t>(),
@@ -80,14 +81,14 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
 
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan,
                        OpenedCache opened, std::unique_ptr<Residency> residency, const CacheFacts& cache,
-                       const std::shared_ptr<const DisplayView>& view)
+                       const PreviewStyle& previews)
     : arguments_(arguments),
       console_(console),
       journal_(journal),
       plan_(plan),
       folder_(plan, journal,
               {opened.image.frame.width, opened.image.frame.height,
-               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, view, arguments.report}),
+               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, previews, arguments.report}),
       tunnels_(opened.tunnels),
       replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
                 std::move(residency), std::move(opened.tunnels)) {
@@ -104,6 +105,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.structures = arguments.structures;
   report_.float_frames = arguments.float_frames;
   report_.layers = arguments.layers;
+  report_.exposure = previews.exposure;
   report_.verify_percent = arguments.verify_percent;
   report_.step_range = arguments.steps;
   report_.threads = thread_count();
@@ -172,6 +174,7 @@ StepReport JournalRun::new_entry(std::uint32_t step, std::size_t frame) const {
   entry.edits_hash = plan_.hashes().at(step, frame);
   entry.source_hash = plan_.source_hash();
   entry.verify_percent = arguments_.verify_percent;
+  entry.exposure = report_.exposure;
   if (step == 0) {
     entry.name = "base";
     return entry;

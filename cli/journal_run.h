@@ -33,7 +33,7 @@ class JournalRun {
   /// `residency`: null, or with which the cache was opened.
   JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan, OpenedCache opened,
              std::unique_ptr<Residency> residency, const CacheFacts& cache,
-             const std::shared_ptr<const DisplayView>& view);
+             const PreviewStyle& previews);
 
   /// Builds their colour trees; no others will be kept.
   void choose_parameters(const std::vector<ParameterSet>& sets) {

@@ -69,7 +69,9 @@ std::vector<Condition> conditions_of(const Arguments& arguments) {
     }
     case Verb::compare: {
       constexpr const char* kExact = "not with --exact, which works out no PSNR, SSIM and FLIP";
-      return {{"--peak", arguments.exact_only, kExact},
+      const bool has_page = !arguments.html.empty() || !arguments.output.empty();
+      return {{"--exposure", !has_page, "it is for the pictures of the page; give --html or -o"},
+              {"--peak", arguments.exact_only, kExact},
               {"--failflip", arguments.exact_only, kExact},
               {"--warnflip", arguments.exact_only, kExact}};
     }

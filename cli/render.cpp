@@ -44,7 +44,7 @@ void apply_journal(SceneState& state, const Journal& journal, const std::optiona
 
 Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& frame,
               const std::optional<Frame>& before, const FrameMeta& meta, Console& console) {
-  if (is_preview_name(arguments.output)) return encode_png(frame, display_view_of_environment());
+  if (is_preview_name(arguments.output)) return encode_png(frame, {display_view_of_environment(), arguments.exposure});
   const PixelFormat format = arguments.float_frames ? PixelFormat::float32 : PixelFormat::half;
   if (!arguments.layers) return encode_exr(frame, meta, format);
   const ChangedPixels changed = before ? pixels_between(*before, frame) : ChangedPixels();
@@ -66,7 +66,8 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   loading.reset();
   console.warn(loaded.warnings);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
-  FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base))};
+  FrameMeta meta{loaded.hash, "", "0", std::string(change_class_name(ChangeClass::base)),
+                 exposure_text(arguments.exposure)};
   std::optional<Frame> before;  // the frame that the last step changed
   const auto render_before = [&] {
     RenderStats ignored;

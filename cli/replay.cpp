@@ -130,13 +130,13 @@ void require_fitting(const Arguments& arguments, const OpenedCache& opened) {
 class ReplayCommand {
  public:
   ReplayCommand(const Arguments& arguments, Console& console, const std::vector<Journal>& journals,
-                std::vector<RunPlan>& plans, const Json& manifest, std::shared_ptr<const DisplayView> view)
+                std::vector<RunPlan>& plans, const Json& manifest, PreviewStyle previews)
       : arguments_(arguments),
         console_(console),
         journals_(journals),
         plans_(plans),
         manifest_text_(manifest.dump(1) + "\n"),
-        view_(std::move(view)) {
+        previews_(std::move(previews)) {
     const Interrupt::Expendable nothing_made(console.interrupt());
     open_cache_anew();
     std::vector<std::string> damage = sentences(opened_.losses);
@@ -156,7 +156,7 @@ class ReplayCommand {
     if (residency_ && residency_->is_limited()) foresee_needs(journals_[i]);
     const std::vector<ParameterSet> chosen = chosen_parameters(*opened_.state, arguments_.structures.params);
     JournalRun run(arguments_, console_, journals_[i], plans_[i], std::exchange(opened_, std::move(next)),
-                   std::move(residency_), facts_, view_);
+                   std::move(residency_), facts_, previews_);
     if (!chosen.empty()) run.choose_parameters(chosen);
     const std::uint64_t different = run.run(i, plans_.size());
     if (is_last) keep_to_the_end(run.take_replayer());
@@ -186,7 +186,7 @@ class ReplayCommand {
   const std::vector<Journal>& journals_;
   std::vector<RunPlan>& plans_;
   std::string manifest_text_;  // of the cache that the runs are of
-  std::shared_ptr<const DisplayView> view_;
+  PreviewStyle previews_;
   std::unique_ptr<Residency> residency_;
   OpenedCache opened_;
   CacheFacts facts_;
@@ -224,15 +224,15 @@ ExitCode run_replay(const Arguments& given, Console& console) {
   if (arguments.structures.memory_bytes) give_back_large_blocks();
   const std::string& cache = arguments.inputs[0];
   const std::vector<Journal> journals = read_journals(arguments, console);
-  const std::shared_ptr<const DisplayView> view = display_view_of_environment();
+  const PreviewStyle previews{display_view_of_environment(), arguments.exposure};
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);
   take_structures_of(manifest, arguments, console);
-  std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, view.get());
+  std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, previews.view.get());
   for (const RunPlan& plan : plans) console.warn(plan.warnings());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
   // Also for runs that are complete: the cache and the journals must be as the command says.
-  ReplayCommand command(arguments, console, journals, plans, manifest, view);
+  ReplayCommand command(arguments, console, journals, plans, manifest, previews);
   std::uint64_t pixels_different = 0;
   Json runs = Json::array();
   for (std::size_t i = 0; i < plans.size(); ++i) {

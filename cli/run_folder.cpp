@@ -62,7 +62,7 @@ RunFolder::RunFolder(RunPlan& plan, const Journal& journal, Style style)
       path_(plan.folder()),
       command_(new_command_number()),
       encoder_(style_.width, style_.height, style_.format),
-      preview_encoder_(style_.width, style_.height, style_.view) {
+      preview_encoder_(style_.width, style_.height, style_.previews) {
   make_folders(path_);
   progress_ = std::make_unique<ProgressFile>(path_, plan.first_step(), plan.last_step());
   plan.begin(*progress_);
@@ -91,6 +91,7 @@ void RunFolder::write_frame(StepReport& step, const Image& image, const FrameCha
   preview_is_stale_ = preview_is_stale_ || takes_all || !change.pixels.empty();
   meta.step = step_label(step.place);
   meta.change_class = change_class_name(step.change);
+  meta.exposure = exposure_text(step.exposure);
   step.frame = frame_name(step.place);
   step.preview = preview_name(step.place);
   std::optional<Bytes> layered;
@@ -124,9 +125,10 @@ void RunFolder::write_overlays(StepReport& step, const Replayer& replayer, const
   make_folders(path_ / "overlays");
   const auto write = [&](const char* kind, const auto& draw) {
     Frame frame = replayer.image().frame;
+    expose(frame, style_.previews.exposure);  // the outlines are white whatever it is
     for (std::size_t tile = 0; tile < tile_count(frame.width, frame.height); ++tile) draw(frame, tile);
     const std::string name = "overlays/" + std::filesystem::path(step.preview).stem().string() + "_" + kind + ".png";
-    const Bytes bytes = encode_png(frame, style_.view);
+    const Bytes bytes = encode_png(frame, {style_.previews.view, 0});
     write_file(path_ / name, bytes);
     step.files[name] = stamp_of(path_ / name, hash128(bytes));
   };

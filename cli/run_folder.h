@@ -26,7 +26,7 @@ class RunFolder {
   struct Style {
     std::uint32_t width = 0, height = 0;
     PixelFormat format = PixelFormat::half;
-    std::shared_ptr<const DisplayView> view;  // of previews and overlays; null: sRGB
+    PreviewStyle previews;  // and of overlays
     ReportKind report = ReportKind::html;
   };
 

@@ -124,6 +124,7 @@ void RunPlan::require_known_files() const {
 /// Of this command's wishes: is what was made enough?
 bool RunPlan::is_enough(const Json& entry) const {
   if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
+  if (entry.at("exposure").get<double>() != arguments_.exposure) return false;
   if (!arguments_.verify_percent) return true;
   const Json& verified = entry.at("verify_percent");
   return !verified.is_null() && verified.get<double>() >= *arguments_.verify_percent;
@@ -149,6 +150,7 @@ KnownFrame RunPlan::known_frame(const LedgerKey& key) const {
 bool RunPlan::is_its_frame(const LedgerKey& key, const Json& entry) const {
   const std::optional<FrameMeta> meta = own_frame_meta(folder_ / entry.at("frame").get_ref<const std::string&>());
   return meta && meta->scene_hash == source_.at("scene") && meta->edits_hash == entry.at("edits") &&
+         meta->exposure == exposure_text(entry.at("exposure").get<double>()) &&
          meta->step == step_label(place_of_key(key)) && (!is_frame(key) || meta->change_class == entry.at("class"));
 }
 
@@ -225,7 +227,7 @@ bool RunPlan::sums_up(std::uint32_t step, const Json& whole) const {
     const Json entry = kept_entry(step, frame);
     change = combined(change, change_class_of(entry.at("class").get_ref<const std::string&>()));
     const bool is_last = frame + 1 == frames_in(step);
-    for (const char* key : {"files", "verify", "verify_percent", "overlays"})
+    for (const char* key : {"files", "verify", "verify_percent", "overlays", "exposure"})
       if (is_last && whole.at(key) != entry.at(key)) return false;
   }
   return whole.at("class") == change_class_name(change);

@@ -74,7 +74,7 @@ TEST_F(DisplayViews, are_those_of_the_config) {
   EXPECT_NEAR(shown.g, std::sqrt(0.5F), 1e-4F);
   EXPECT_NEAR(shown.b, 0.5F, 1e-4F);
   Frame frame{2, 1, {Rgba(0.25F, 0.5F, 0.0625F, 1), Rgba(-1, 0, 9, 1)}};
-  const auto pyramid = decode_pyramid(encode_png(frame, view), true, "preview", "");
+  const auto pyramid = decode_pyramid(encode_png(frame, {view}), true, "preview", "");
   const std::vector<std::uint8_t> row(pyramid->texels8.begin(), pyramid->texels8.begin() + 7);
   EXPECT_EQ(row, (std::vector<std::uint8_t>{64, 180, 128, 255, 255, 0, 0}));
 }
@@ -88,13 +88,13 @@ TEST_F(DisplayViews, are_none_without_a_config) {
 TEST_F(DisplayViews, updated_previews_equal_fresh_ones) {
   const std::shared_ptr<const DisplayView> view = view_of(at("config.ocio"));
   Frame frame{70, 40, std::vector<Rgba>(70 * 40, Rgba(0.1F, 0.2F, 0.3F, 1))};
-  PreviewEncoder encoder(70, 40, view);
+  PreviewEncoder encoder(70, 40, {view});
   encoder.update(frame);
-  EXPECT_EQ(encoder.png(), encode_png(frame, view));
+  EXPECT_EQ(encoder.png(), encode_png(frame, {view}));
   EXPECT_NE(encoder.png(), encode_png(frame));
   frame.pixels[70 * 20 + 65] = Rgba(0.9F, 0.8F, 0.7F, 1);
   encoder.update(frame, ChangedPixels(std::vector<std::uint32_t>{70 * 20 + 65}, 70));
-  EXPECT_EQ(encoder.png(), encode_png(frame, view));
+  EXPECT_EQ(encoder.png(), encode_png(frame, {view}));
 }
 
 TEST_F(DisplayViews, bad_configs_are_one_line) {

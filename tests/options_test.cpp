@@ -81,6 +81,7 @@ TEST_F(Options, without_effect_beside_others_are_refused) {
       {{"render", "SCENE", "-o", png, "--float"}, "--float", "PNG"},
       {{"render", "SCENE", "-o", png, "--aovs"}, "--aovs", "PNG"},
       {{"replay", "C", "J", "-o", "R", "--report", "none", "--baseline"}, "--baseline", "--report none"},
+      {{"compare", "C", "R", "--exposure", "2"}, "--exposure", "--html"},
       {{"compare", "C", "R", "--exact", "--peak", "2"}, "--peak", "--exact"},
       {{"compare", "C", "R", "--exact", "--failflip", "0.1"}, "--failflip", "--exact"},
       {{"compare", "C", "R", "--exact", "--warnflip", "0.1"}, "--warnflip", "--exact"},

@@ -70,8 +70,8 @@ void PixelBundles::end_file() {
   file_.reset();
 }
 
-PagePixels::PagePixels(const std::filesystem::path& run, PageFiles& files)
-    : folder_(run), frames_bytes_(bytes_of_frames(run / "frames")), bundles_(files) {}
+PagePixels::PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files)
+    : folder_(run), run_(exposure), frames_bytes_(bytes_of_frames(run / "frames")), bundles_(files) {}
 
 void PagePixels::take(std::size_t entry, const std::string& stem, bool is_last, std::size_t room_bytes) {
   if (stem != std::exchange(stem_, stem)) {

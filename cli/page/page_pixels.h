@@ -38,8 +38,8 @@ class PixelBundles {
 
 class PagePixels {
  public:
-  /// `files` outlives this.
-  PagePixels(const std::filesystem::path& run, PageFiles& files);
+  /// `files` outlives this. `exposure`: stops, of thumbnails.
+  PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files);
 
   /// The frame of an entry. `room_bytes`: what all pixels may take in the page.
   void take(std::size_t entry, const std::string& stem, bool is_last, std::size_t room_bytes);

@@ -39,7 +39,8 @@ class RunReport {
     this.entry = Math.min(1, this.steps.length - 1);
     this.shown = null;  // the entries that are painted: { before, after }
     this.stepDetails = null;  // of the entry, once they are there
-    this.exposure = 0;
+    this.ownExposure = this.report.options?.exposure ?? 0;  // of the previews
+    this.exposure = 0;  // beside it
     this.shownOverlays = new Set();
     this.painting = Promise.resolve();
     this.viewer = new Viewer(page.byId("view"), { onPixel: () => this.showReadout(), onChange: () => this.showTools() });
@@ -159,7 +160,7 @@ class RunReport {
   }
 
   paintBuffers() {
-    const table = new DisplayTable(this.exposure, this.isHalf);
+    const table = new DisplayTable(this.ownExposure + this.exposure, this.isHalf);
     for (const side of ["before", "after"]) {
       const canvas = this.viewer[side], preview = this.previews[side], { width, height } = this.buffers[side];
       if (!preview) {
@@ -224,7 +225,8 @@ class RunReport {
       button.setAttribute("aria-pressed", String(this.shownOverlays.has(button.dataset.overlay)));
     page.byId("zoom-text").textContent = `${Number((this.viewer.scale * 100).toPrecision(3))} %`;
     page.byId("exposure").value = this.exposure;
-    page.byId("exposure-text").textContent = `${this.exposure >= 0 ? "+" : ""}${this.exposure} EV`;
+    const stops = this.ownExposure + this.exposure;
+    page.byId("exposure-text").textContent = `${stops >= 0 ? "+" : ""}${stops} EV`;
   }
 
   showReadout() {

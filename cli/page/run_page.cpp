@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "engine/display_view.h"
 #include "page/page.h"
 #include "page/page_details.h"
 #include "page/page_files.h"
@@ -59,6 +60,13 @@ class Pictures {
   bool is_open_ = true;
 };
 
+double exposure_of(const Json& head) {
+  const Json* value = head.contains("options") ? &head.at("options") : nullptr;
+  if (value == nullptr || !value->is_object() || !value->contains("exposure")) return 0;
+  value = &value->at("exposure");
+  return value->is_number() ? std::clamp(value->get<double>(), -kMostExposure, kMostExposure) : 0;
+}
+
 /// Goes through the entries once. What the page has no room for leaves it in this order: overlays, pixels, thumbnails,
 /// details. Rows stay, and end when there is no room for them either.
 class RunPage {
@@ -66,7 +74,7 @@ class RunPage {
   explicit RunPage(const RunPageInput& input)
       : input_(input),
         files_(input.folder),
-        pixels_(input.folder, files_),
+        pixels_(input.folder, exposure_of(input.head), files_),
         details_(files_, (pixels_.frames_bytes() / 2 + kFreeBesideBytes) / 8),
         head_(shown_head(input.head)),
         head_bytes_(script_json(head_).size()) {}

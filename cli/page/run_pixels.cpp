@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "engine/exr_tiles.h"
-#include "engine/preview.h"
 #include "trace/ray_tree.h"
 
 namespace relook {
@@ -118,9 +117,9 @@ void RunPixels::shrink(std::size_t tile) {
         for (std::uint32_t x = x0; x < std::min(x0 + shrink_, rect.x1); ++x, ++count) {
           const Rgba& pixel = pixels[std::size_t{y - rect.y0} * columns + x - rect.x0];
           // As they are shown: one bright pixel is not to bleach its neighbours.
-          sum.r += std::min(pixel.r, 1.0F);
-          sum.g += std::min(pixel.g, 1.0F);
-          sum.b += std::min(pixel.b, 1.0F);
+          sum.r += std::min(pixel.r * gain_, 1.0F);
+          sum.g += std::min(pixel.g * gain_, 1.0F);
+          sum.b += std::min(pixel.b * gain_, 1.0F);
         }
       }
       thumbnail_.pixels[std::size_t{y0 / shrink_} * thumbnail_.width + x0 / shrink_] = {sum.r / count, sum.g / count,

@@ -5,12 +5,16 @@
 #include <vector>
 
 #include "engine/frame_tiles.h"
+#include "engine/preview.h"
 
 namespace relook {
 
 /// Takes the frames of a run in their order.
 class RunPixels {
  public:
+  /// `exposure`: stops, of thumbnails.
+  explicit RunPixels(double exposure) : gain_(gain_of(exposure)) {}
+
   /// Makes a file the current frame. Throws InputError when it is no frame, or not of the size and channels of those
   /// before.
   void load(Bytes file, std::string_view name);
@@ -33,6 +37,7 @@ class RunPixels {
   [[nodiscard]] std::vector<Bytes> packed_colors() const;
   void shrink(std::size_t tile);
 
+  float gain_;
   FrameTiles current_;
   std::vector<FrameTiles::Channel> channels_;
   std::vector<Bytes> packed_, kept_;  // by tile; kept_ is empty before the first keep()

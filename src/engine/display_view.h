@@ -18,6 +18,14 @@ class DisplayView {
   [[nodiscard]] virtual std::string id() const = 0;
 };
 
+/// How previews show frames.
+struct PreviewStyle {
+  std::shared_ptr<const DisplayView> view;  // null: sRGB
+  double exposure = 0;                      // stops: linear colours times 2^exposure, before the view
+};
+/// Exposures are finite, and of this size at most.
+inline constexpr double kMostExposure = 100;
+
 /// What the module exports, as relook_open_view: the default view of the default display of a config file. Null:
 /// `error` says why, in one or more lines.
 using OpenDisplayView = std::shared_ptr<const DisplayView>(const char* config, std::string& error);

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/json.h"
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "base/pool.h"
@@ -68,11 +69,14 @@ std::uint32_t clipped_in(const Frame& frame, const TileRect& rect) {
 
 }  // namespace
 
+std::string exposure_text(double exposure) { return exposure == 0 ? "" : Json(exposure).dump(); }
+
 ExrAttributes frame_attributes(const FrameMeta& meta) {
   ExrAttributes attributes{{"relook:scene", meta.scene_hash},
                            {"relook:edits", meta.edits_hash},
                            {"relook:step", meta.step},
-                           {"relook:class", meta.change_class}};
+                           {"relook:class", meta.change_class},
+                           {"relook:exposure", meta.exposure}};
   std::erase_if(attributes, [](const auto& attribute) { return attribute.second.empty(); });
   return attributes;
 }

@@ -16,14 +16,17 @@
 
 namespace relook {
 
-/// What a frame's header says of its origin: the string attributes relook:scene, relook:edits, relook:step and
-/// relook:class. Empty ones are left out.
+/// What a frame's header says of its origin: the string attributes relook:scene, relook:edits, relook:step,
+/// relook:class and relook:exposure. Empty ones are left out.
 struct FrameMeta {
   std::string scene_hash;
   std::string edits_hash;    // of the edits up to this frame (report/edit_hashes.h)
   std::string step;          // "3", "3_01"
   std::string change_class;  // change_class_name()
+  std::string exposure;      // exposure_text(): how its previews are exposed; the frame is not
 };
+/// Stops, as few digits as tell them: "-2.5". "" for none.
+[[nodiscard]] std::string exposure_text(double exposure);
 [[nodiscard]] ExrAttributes frame_attributes(const FrameMeta& meta);
 
 /// The compressed tiles of one frame. Taking pixels is quick, and exr() needs no frame: it may run on another thread

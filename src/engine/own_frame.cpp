@@ -33,10 +33,11 @@ std::optional<FrameMeta> meta_of(exr_const_context_t file) {
   std::int32_t count = 0;
   if (exr_get_attribute_count(file, 0, &count) != EXR_ERR_SUCCESS) return std::nullopt;
   FrameMeta meta;
-  const std::array<std::pair<std::string_view, std::string*>, 4> texts{{{"relook:scene", &meta.scene_hash},
+  const std::array<std::pair<std::string_view, std::string*>, 5> texts{{{"relook:scene", &meta.scene_hash},
                                                                         {"relook:edits", &meta.edits_hash},
                                                                         {"relook:step", &meta.step},
-                                                                        {"relook:class", &meta.change_class}}};
+                                                                        {"relook:class", &meta.change_class},
+                                                                        {"relook:exposure", &meta.exposure}}};
   bool names_scene = false;
   for (std::int32_t i = 0; i < count; ++i) {
     const exr_attribute_t* attribute = nullptr;

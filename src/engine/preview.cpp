@@ -63,22 +63,32 @@ void append(Bytes& out, BytesView data) {
   std::copy(data.begin(), data.end(), out.data() + start);
 }
 
+Rgba exposed(const Rgba& pixel, float gain) { return {pixel.r * gain, pixel.g * gain, pixel.b * gain, pixel.a}; }
+
 /// The nearest code of a display value.
 unsigned char display_code(float value) {
   return value > 0 ? static_cast<unsigned char>(std::min(value, 1.0F) * 255.0F + 0.5F) : std::uint8_t{0};  // NaN: 0
 }
 
 constexpr std::string_view kWriter("Software\0relook", 15);  // keyword and text of a tEXt chunk
-constexpr std::size_t kWriterOffset = 8 + 25 + 8;              // behind the signature, IHDR, and the chunk's own head
+constexpr std::size_t kWriterOffset = 8 + 25 + 8;            // behind the signature, IHDR, and the chunk's own head
 
 constexpr std::uint32_t kBandRows = 16;
 
 }  // namespace
 
-PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height, std::shared_ptr<const DisplayView> view)
+float gain_of(double exposure) { return static_cast<float>(std::exp2(exposure)); }
+
+void expose(Frame& frame, double exposure) {
+  const float gain = gain_of(exposure);
+  for (Rgba& pixel : frame.pixels) pixel = exposed(pixel, gain);
+}
+
+PreviewEncoder::PreviewEncoder(std::uint32_t width, std::uint32_t height, PreviewStyle style)
     : width_(width),
       height_(height),
-      view_(std::move(view)),
+      view_(std::move(style.view)),
+      gain_(gain_of(style.exposure)),
       codes_(std::size_t{width} * height * 3),
       bands_((height + kBandRows - 1) / kBandRows) {}
 
@@ -90,7 +100,8 @@ void PreviewEncoder::take(const Frame& frame, std::uint32_t x, std::uint32_t y, 
   static const SrgbCodes codes_of;
   const std::size_t index = std::size_t{y} * width_ + x;
   unsigned char* codes = &codes_[index * 3];
-  for (const Rgba& pixel : std::span(frame.pixels).subspan(index, count)) {
+  for (const Rgba& linear : std::span(frame.pixels).subspan(index, count)) {
+    const Rgba pixel = exposed(linear, gain_);
     if (view_) {
       const Rgba shown = view_->apply(pixel);
       for (int channel = 0; channel < 3; ++channel) codes[channel] = display_code(shown[channel]);
@@ -180,8 +191,8 @@ bool is_own_preview(std::string_view start) {
          start.substr(kWriterOffset).starts_with(kWriter);
 }
 
-Bytes encode_png(const Frame& frame, std::shared_ptr<const DisplayView> view) {
-  PreviewEncoder encoder(frame.width, frame.height, std::move(view));
+Bytes encode_png(const Frame& frame, PreviewStyle style) {
+  PreviewEncoder encoder(frame.width, frame.height, std::move(style));
   encoder.update(frame);
   return encoder.png();
 }

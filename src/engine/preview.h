@@ -1,7 +1,6 @@
-// Previews: 8-bit PNG files of a frame over black, sRGB or as a display view says, for looking at, never for comparing.
-// Deflated in bands of rows
-// that are kept from step to step, so that a step pays for the bands that it changed; by ISA-L, four times as fast as
-// zlib, since this is most of what a small edit's files cost.
+// Previews: 8-bit PNG files of a frame over black, exposed, in sRGB or as a display view says, for looking at, never
+// for comparing. Deflated in bands of rows that are kept from step to step, so that a step pays for the bands that it
+// changed; by ISA-L, four times as fast as zlib, since this is most of what a small edit's files cost.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -15,12 +14,11 @@
 
 namespace relook {
 
-/// NaN becomes black. The bytes depend on the frame and the view alone. Taking pixels is quick, and png() needs no
+/// NaN becomes black. The bytes depend on the frame and the style alone. Taking pixels is quick, and png() needs no
 /// frame: it may run on another thread while the next frame is computed.
 class PreviewEncoder {
  public:
-  /// `view`: what makes display values; null: sRGB.
-  PreviewEncoder(std::uint32_t width, std::uint32_t height, std::shared_ptr<const DisplayView> view = nullptr);
+  PreviewEncoder(std::uint32_t width, std::uint32_t height, PreviewStyle style = {});
 
   /// Takes all pixels.
   void update(const Frame& frame);
@@ -42,6 +40,7 @@ class PreviewEncoder {
 
   std::uint32_t width_, height_;
   std::shared_ptr<const DisplayView> view_;
+  float gain_;
   std::vector<unsigned char> codes_;  // [height * width * 3], row 0 on top
   std::vector<Band> bands_;
 };
@@ -49,6 +48,11 @@ class PreviewEncoder {
 /// Whether a PNG file with this start, 64 bytes at least, is one that this program has written.
 [[nodiscard]] bool is_own_preview(std::string_view start);
 
-[[nodiscard]] Bytes encode_png(const Frame& frame, std::shared_ptr<const DisplayView> view = nullptr);
+[[nodiscard]] Bytes encode_png(const Frame& frame, PreviewStyle style = {});
+
+/// What R, G and B are multiplied by.
+[[nodiscard]] float gain_of(double exposure);
+/// For what is drawn onto a frame before it is encoded without exposure.
+void expose(Frame& frame, double exposure);
 
 }  // namespace relook

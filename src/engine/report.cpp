@@ -117,6 +117,7 @@ Json step_json(const StepReport& step) {
           {"reloaded", moves_json(counters.reloaded)},
           {"peak_rss", step.peak_rss_bytes},
           {"resumed", false},
+          {"exposure", step.exposure},
           {"overlays", step.has_overlays},
           {"verify_percent", or_null(step.verify_percent)},
           {"verify", verify_json(step.verify)}};
@@ -139,6 +140,7 @@ Json options_json(const RunReport& report) {
           {"shadow_bits", report.view.shadow_bits},
           {"float", report.float_frames},
           {"aovs", report.layers},
+          {"exposure", report.exposure},
           {"verify", or_null(report.verify_percent)},
           {"steps", range_json(report.step_range)}};
 }

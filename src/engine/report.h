@@ -45,6 +45,7 @@ struct StepReport {
   std::string frame, preview;  // files relative to the run folder
   std::string edits_hash;      // see report/edit_hashes.h
   std::string source_hash;     // of RunReport::source
+  double exposure = 0;         // stops, of the preview and the overlays
   bool has_overlays = false;   // they were asked for
   std::optional<double> verify_percent;
   std::string command;  // that has done it: a number of its own
@@ -95,6 +96,7 @@ struct RunReport {
   StructureOptions structures;
   bool float_frames = false;
   bool layers = false;  // --aovs
+  double exposure = 0;  // stops, of previews
   std::optional<double> verify_percent;
   std::optional<StepRange> step_range;  // none: all
   std::size_t threads = 0;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "engine/display_view.h"
 
 namespace relook {
 namespace {
@@ -17,7 +18,7 @@ constexpr std::string_view kSealStart = ",\"seal\":\"", kSealEnd = "\"}";
 constexpr double kMostSeconds = 1e9;
 constexpr std::int64_t kMostFrames = 1'000'000;
 
-constexpr std::array<std::string_view, 36> kMembers{"step",
+constexpr std::array<std::string_view, 37> kMembers{"step",
                                                     "name",
                                                     "class",
                                                     "reasons",
@@ -50,6 +51,7 @@ constexpr std::array<std::string_view, 36> kMembers{"step",
                                                     "reloaded",
                                                     "peak_rss",
                                                     "resumed",
+                                                    "exposure",
                                                     "overlays",
                                                     "verify_percent",
                                                     "verify"};
@@ -102,6 +104,7 @@ void check_members(const JsonView& view) {
 void check_numbers(const JsonView& view) {
   for (const std::string_view count : kCounts) check_count(view.at(count));
   (void)view.at("step").integer(0, kMostFrames);
+  (void)view.at("exposure").number(-kMostExposure, kMostExposure);
   for (const char* kind : {"drag_frame", "wedge_frame"})
     if (const JsonView number = view.at(kind); !number.value().is_null()) (void)number.integer(1, kMostFrames);
   if (!view.at("drag_frame").value().is_null() && !view.at("wedge_frame").value().is_null())
