@@ -383,7 +383,7 @@ TEST_F(PackedMeshes, what_is_wrong_about_meshopt_data_is_said) {
       {"/count", 70, ": the compressed data is damaged"},
       {"/mode", "TRIANGLES", "/byteStride: indices have 2 or 4 bytes"},
       {"/mode", "NONE", ": mode NONE is not supported; ATTRIBUTES, TRIANGLES and INDICES are; "},
-      {"/mode", 1, "/mode: must be text"},
+      {"/mode", 1, "/mode: must be a string"},
       {"/filter", "OCTAHEDRAL", "/byteStride: the filter does not have this stride"},
       {"/filter", "QUATERNION", "/byteStride: the filter does not have this stride"},
   };
