@@ -156,7 +156,7 @@ TEST(SpecularGlossiness, WhatBringsNoAlphaIsANumber) {
   add_image(broken, std::string(16, static_cast<char>(200)));
   broken.binary.resize(broken.binary.size() - 20);
   broken.binary.append(20, 'x');
-  empty.gltf["textures"] = {Json::object()};
+  empty.gltf["textures"] = Json::array({Json::object()});
   for (const SceneFile* file : {&opaque, &broken, &empty}) {
     const Loaded loaded = load(with_material(
         *file, converted({{"glossinessFactor", 0.75}, {"specularGlossinessTexture", {{"index", 0}}}})));
