@@ -52,6 +52,7 @@ TEST(Table1, color_rows) {
       {"/materials/Gold/emissiveFactor", "[0, 0, 0]", "[1, 0, 0]"},
       {"/materials/Gold/extensions/KHR_materials_sheen/sheenColorFactor", "[0, 0, 0]", "[1, 0, 0]"},
       {"/materials/Gold/extensions/KHR_materials_ior/ior", "1.5", "1.8"},  // nothing is refracted by it
+      {"/materials/Gold/extensions/KHR_materials_dispersion/dispersion", "0", "5"},
       {"/materials/Gold/normalTexture", kBumps, kStrongBumps},
       {"/materials/Gold/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale", "[1, 1]",
        "[2, 2]"},
@@ -77,6 +78,8 @@ TEST(Table1, optical_rows) {
       {"/materials/Glass/extensions/KHR_materials_transmission/transmissionFactor", "0", "0.5"},
       {"/materials/Glass/extensions/KHR_materials_volume/thicknessFactor", "0", "0.5"},
       {"/materials/Glass/extensions/KHR_materials_ior/ior", "1.5", "1.8"},
+      {"/materials/Glass/extensions/KHR_materials_dispersion/dispersion", "0", "5"},
+      {"/materials/Glass/extensions/KHR_materials_dispersion/dispersion", "5", "2"},
       {"/materials/Mirror/extensions/KHR_materials_clearcoat/clearcoatFactor", "0", "1"},
       {"/materials/Mirror/normalTexture", kBumps, kStrongBumps},
       {"/materials/Glass/normalTexture", kBumps, kStrongBumps},

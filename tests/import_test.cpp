@@ -226,6 +226,8 @@ const std::vector<Damage> kDamages = {
      "/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord: texture coordinate set 2"},
     {"/materials/0/extensions/KHR_materials_ior/ior", 0.5,
      "/materials/0/extensions/KHR_materials_ior/ior: must be 0 or from 1 to 10"},
+    {"/materials/0/extensions/KHR_materials_dispersion/dispersion", -1,
+     "/materials/0/extensions/KHR_materials_dispersion/dispersion: -1 is out of range"},
     {"/materials/0/extensions/KHR_materials_volume/attenuationDistance", 0,
      "/materials/0/extensions/KHR_materials_volume/attenuationDistance: must be greater"},
     {"/materials/0/alphaMode", "blend", "/materials/0/alphaMode: \"blend\" is not one of"},

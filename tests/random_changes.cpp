@@ -53,7 +53,7 @@ void change_optics(Change& change, const Json& look, Dice& dice) {
   const std::string material = "/materials/" + dice.one_of(kMaterials);
   const auto weight = [&] { return dice.chance(0.4) ? 0.0 : dice.between(0, 1); };
   const Json bumps = {{"index", "Bumps"}, {"scale", dice.between(0, 1)}};
-  switch (dice.below(11)) {
+  switch (dice.below(12)) {
     case 0:
       return change.set(look, material + "/pbrMetallicRoughness/roughnessFactor", dice.between(0, 0.5));
     case 1:
@@ -75,6 +75,8 @@ void change_optics(Change& change, const Json& look, Dice& dice) {
       return change.set(look, material + "/extras/relook/refraction", weight());
     case 9:
       return change.set(look, material + "/extras/relook/transparency", weight());
+    case 10:
+      return change.set(look, material + "/extensions/KHR_materials_dispersion/dispersion", 8 * weight());
     default:
       return change.set(look, material + "/extensions/KHR_materials_specular/specularFactor", weight());
   }

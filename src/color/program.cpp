@@ -39,6 +39,7 @@ MaterialStructure structure_of(const Material& material) {
                               material.thickness > 0,
                               is_positive(material.sheen_color),
                               material.clearcoat > 0,
+                              material.dispersion > 0,
                               0,
                               0};
   for (std::size_t slot = 0; slot < kSlotCount; ++slot) {

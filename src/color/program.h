@@ -32,6 +32,7 @@ struct MaterialStructure {
   IlluminationModel model = IlluminationModel::metallic_roughness;
   AlphaMode alpha_mode = AlphaMode::opaque;
   bool transmits = false, thick = false, sheen = false, clearcoat = false;  // the value is not zero
+  bool disperses = false;                                                   // likewise
   std::uint16_t textures = 0, procedurals = 0;                              // bit per Slot: there is one; procedural
   auto operator<=>(const MaterialStructure&) const = default;
 };

@@ -156,6 +156,7 @@ void set_core(const Json& value, Material& m) {
 
 void set_extensions(const Json& extensions, Material& m) {
   m.ior = float_of(extensions["KHR_materials_ior"]["ior"]);
+  m.dispersion = float_of(extensions["KHR_materials_dispersion"]["dispersion"]);
   m.transmission = float_of(extensions["KHR_materials_transmission"]["transmissionFactor"]);
   const Json& volume = extensions["KHR_materials_volume"];
   m.thickness = float_of(volume["thicknessFactor"]);
@@ -292,8 +293,9 @@ void check_texture_entity(const LookDocument& document, std::string_view file, S
     }
     const int minified = value.value("minFilter", 9987);
     if (minified > 9729 && minified < 9984)
-      throw LookError(file, pointer + "/minFilter",
-                      std::to_string(minified) + " is not one of 9728 (nearest), 9729 (linear), 9984 to 9987 (of levels)");
+      throw LookError(
+          file, pointer + "/minFilter",
+          std::to_string(minified) + " is not one of 9728 (nearest), 9729 (linear), 9984 to 9987 (of levels)");
   }
   if (section != Section::images) return;
   const std::string& content = value["extras"]["relook"].value("content", "");

@@ -31,6 +31,7 @@ constexpr float kUnbounded = std::numeric_limits<float>::max();
 std::vector<ExtensionRules> extension_rules() {
   return {
       {"KHR_materials_ior", {{"ior", 1, 0, 10}}, {}},
+      {"KHR_materials_dispersion", {{"dispersion", 1, 0, kLargestFactor}}, {}},
       {"KHR_materials_transmission", {{"transmissionFactor", 1, 0, 1}}, {{"transmissionTexture", ""}}},
       {"KHR_materials_volume",
        {{"thicknessFactor", 1, 0, kUnbounded},
