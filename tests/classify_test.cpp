@@ -56,6 +56,7 @@ TEST(Table1, color_rows) {
       {"/materials/Gold/extensions/KHR_materials_iridescence/iridescenceFactor", "0", "1"},
       {"/materials/Gold/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum", "400", "500"},
       {"/materials/Gold/extensions/KHR_materials_ior/ior", "1.5", "1.8"},  // nothing is refracted by it
+      {"/materials/Gold/extensions/KHR_materials_dispersion/dispersion", "0", "5"},
       {"/materials/Gold/normalTexture", kBumps, kStrongBumps},
       {"/materials/Gold/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale", "[1, 1]",
        "[2, 2]"},
@@ -81,6 +82,8 @@ TEST(Table1, optical_rows) {
       {"/materials/Glass/extensions/KHR_materials_transmission/transmissionFactor", "0", "0.5"},
       {"/materials/Glass/extensions/KHR_materials_volume/thicknessFactor", "0", "0.5"},
       {"/materials/Glass/extensions/KHR_materials_ior/ior", "1.5", "1.8"},
+      {"/materials/Glass/extensions/KHR_materials_dispersion/dispersion", "0", "5"},
+      {"/materials/Glass/extensions/KHR_materials_dispersion/dispersion", "5", "2"},
       {"/materials/Mirror/extensions/KHR_materials_clearcoat/clearcoatFactor", "0", "1"},
       {"/materials/Mirror/normalTexture", kBumps, kStrongBumps},
       {"/materials/Glass/normalTexture", kBumps, kStrongBumps},

@@ -225,6 +225,8 @@ const std::vector<Damage> kDamages = {
      "/materials/0/pbrMetallicRoughness/baseColorTexture/texCoord: 2 is above 1"},
     {"/materials/0/extensions/KHR_materials_ior/ior", 0.5,
      "/materials/0/extensions/KHR_materials_ior/ior: 0.5 is below 1 and not 0"},
+    {"/materials/0/extensions/KHR_materials_dispersion/dispersion", -1,
+     "/materials/0/extensions/KHR_materials_dispersion/dispersion: -1 is below 0"},
     {"/materials/0/extensions/KHR_materials_volume/attenuationDistance", 0,
      "/materials/0/extensions/KHR_materials_volume/attenuationDistance: 0 is not above 0"},
     {"/materials/0/alphaMode", "blend", "/materials/0/alphaMode: \"blend\" is not one of"},

@@ -74,12 +74,11 @@ std::string slot_text(const TextureSlot& slot) {
   const Procedural& p = slot.procedural;
   text += std::to_string(static_cast<int>(p.kind)) + " " + std::to_string(p.octaves) + " " + bits(p.scale) +
           bits(p.turbulence) + bits(p.color1) + bits(p.color2);
-  text += std::to_string(static_cast<int>(slot.sampler.wrap_s)) +
-          std::to_string(static_cast<int>(slot.sampler.wrap_t)) +
-          std::to_string(static_cast<int>(slot.sampler.magnified)) +
-          std::to_string(static_cast<int>(slot.sampler.minified)) +
-          std::to_string(static_cast<int>(slot.sampler.levels)) + std::to_string(static_cast<int>(slot.mapping)) +
-          std::to_string(slot.axis) + std::to_string(slot.texcoord) + " ";
+  text +=
+      std::to_string(static_cast<int>(slot.sampler.wrap_s)) + std::to_string(static_cast<int>(slot.sampler.wrap_t)) +
+      std::to_string(static_cast<int>(slot.sampler.magnified)) +
+      std::to_string(static_cast<int>(slot.sampler.minified)) + std::to_string(static_cast<int>(slot.sampler.levels)) +
+      std::to_string(static_cast<int>(slot.mapping)) + std::to_string(slot.axis) + std::to_string(slot.texcoord) + " ";
   return text + bits(slot.offset.x) + bits(slot.offset.y) + bits(slot.scale.x) + bits(slot.scale.y) +
          bits(slot.rotation);
 }
@@ -89,7 +88,7 @@ std::string material_text(const Material& m) {
                      std::to_string(static_cast<int>(m.alpha_mode)) + (m.double_sided ? "d " : "s ");
   text += bits(m.base_color.r) + bits(m.base_color.g) + bits(m.base_color.b) + bits(m.base_color.a);
   for (float x :
-       {m.alpha_cutoff, m.metallic, m.roughness, m.normal_scale, m.occlusion_strength, m.emissive_strength, m.ior,
+       {m.alpha_cutoff, m.metallic, m.roughness, m.normal_scale, m.occlusion_strength, m.emissive_strength, m.ior, m.dispersion,
         m.transmission, m.thickness, m.attenuation_distance, m.specular, m.clearcoat, m.clearcoat_roughness,
         m.clearcoat_normal_scale, m.sheen_roughness, m.anisotropy, m.anisotropy_rotation, m.iridescence, m.iridescence_ior,
         m.iridescence_minimum, m.iridescence_maximum, m.shininess, m.reflection, m.refraction, m.transparency})

@@ -60,7 +60,7 @@ void change_optics(Change& change, const Json& look, Dice& dice) {
   const std::string material = "/materials/" + dice.one_of(kMaterials);
   const auto weight = [&] { return dice.chance(0.4) ? 0.0 : dice.between(0, 1); };
   const Json bumps = {{"index", "Bumps"}, {"scale", dice.between(0, 1)}};
-  switch (dice.below(13)) {
+  switch (dice.below(14)) {
     case 0:
       return change.set(look, material + "/pbrMetallicRoughness/roughnessFactor", dice.between(0, 0.5));
     case 1:
@@ -87,6 +87,8 @@ void change_optics(Change& change, const Json& look, Dice& dice) {
     case 11:
       return change.set(look, material + "/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum",
                         dice.between(100, 900));
+    case 12:
+      return change.set(look, material + "/extensions/KHR_materials_dispersion/dispersion", 8 * weight());
     default:
       return change.set(look, material + "/extensions/KHR_materials_specular/specularFactor", weight());
   }

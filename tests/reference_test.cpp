@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "edit/apply.h"
 #include "reference_tracer.h"
 #include "test_scenes.h"
 
@@ -227,6 +228,11 @@ TEST(Reference, Cards) { expect_agreement(cards_scene(64, 48), 6); }
 TEST(Reference, Study) { expect_agreement(study_scene(64, 48), 6); }
 TEST(Reference, TexturesPrimaryRaysOnly) { expect_agreement(textured_scene(), 1); }
 TEST(Reference, Textures) { expect_agreement(textured_scene(), 6); }
+TEST(Reference, Dispersion) {
+  SceneState state = spheres_scene(64, 48);
+  (void)apply_edit(state, replace_edit("/materials/Glass/extensions/KHR_materials_dispersion/dispersion", 8), "", ".");
+  expect_agreement(state, 6);
+}
 TEST(Reference, TransportPrimaryRaysOnly) { expect_agreement(transport_scene(), 1); }
 TEST(Reference, Transport) { expect_agreement(transport_scene(), 6); }
 TEST(Reference, BrushedPrimaryRaysOnly) { expect_agreement(brushed_scene(), 1); }

@@ -204,7 +204,7 @@ Vec ReferenceTracer::reflected(const Surface& s, Vec normal) const {
 ReferenceTracer::Answer ReferenceTracer::spawn(const Surface& s, const Ray& ray, Vec direction, double fresnel) const {
   if (ray.generation >= max_depth_ || ray.fresnel * fresnel < 1e-3) return {};
   const Vec origin = s.p + s.ng * (direction.dot(s.ng) > 0 ? kOffset : -kOffset);
-  return trace({origin, direction, s.width, ray.spread, ray.generation + 1, ray.fresnel * fresnel});
+  return trace({origin, direction, s.width, ray.spread, ray.generation + 1, ray.fresnel * fresnel, ray.channel});
 }
 
 Vec ReferenceTracer::beer(const Surface& s, bool runs_inside, const Answer& answer) const {
@@ -259,10 +259,24 @@ double ReferenceTracer::mirror_roughness(const Surface& s) const {
   const double strength = s.material->anisotropy * texture(s, Slot::anisotropy).z, alpha = s.roughness * s.roughness;
   return std::sqrt(alpha * (1 - strength * strength) + strength * strength);
 }
+namespace {
+double ior_of(int channel, const SurfaceOptics& optics, double middle) {
+  const double half_spread = (middle - 1) * 0.025 * double{optics.dispersion};
+  return channel == 0 ? std::max(middle - half_spread, 1.0) : channel == 2 ? middle + half_spread : middle;
+}
+}  // namespace
 
 Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const {
+  if (s.optics.dispersion <= 0 || ray.channel >= 0) return metallic_roughness_of(ray.channel, s, ray);
+  Vec color;
+  for (int channel = 0; channel < 3; ++channel) color[channel] = metallic_roughness_of(channel, s, ray)[channel];
+  return color;
+}
+
+Vec ReferenceTracer::metallic_roughness_of(int channel, const Surface& s, const Ray& ray) const {
   const Material& m = *s.material;
-  const double ior = m.ior, nv = std::max(s.n.dot(s.view), 1e-4), dielectric = 1 - s.metallic;
+  const double ior = ior_of(channel, s.optics, m.ior), nv = std::max(s.n.dot(s.view), 1e-4),
+               dielectric = 1 - s.metallic;
   const double r0 = std::pow((ior - 1) / (ior + 1), 2), f90 = m.specular * texture(s, Slot::specular).w;
   const Imath::V4d tint = texture(s, Slot::specular_color);
   Vec f0 = color_of(m.specular_color) * Vec(tint.x, tint.y, tint.z) * r0;
@@ -278,7 +292,12 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
   const auto fresnel = [&](double w, double c) {
     return fd(w, c) * dielectric + filmed(s.base + (Vec(1, 1, 1) - s.base) * w, s.base, c) * s.metallic;
   };
-  const double exact = fresnel_exact(s.inside ? std::max(nv, s.ng.dot(s.view)) : nv, s.inside ? ior : 1 / ior);
+  const auto reflectance = [&](double n) {
+    return fresnel_exact(s.inside ? std::max(nv, s.ng.dot(s.view)) : nv, s.inside ? n : 1 / n);
+  };
+  const double exact = reflectance(ior);
+  double most = exact;  // of the channels that a mirror ray is for
+  for (int c = 0; c < 3 && ray.channel < 0; ++c) most = std::max(most, reflectance(ior_of(c, s.optics, m.ior)));
   const double weight = s.optics.volume ? std::clamp((exact - r0) / (1 - r0), 0.0, 1.0) : schlick(nv);
   const double diffuse = dielectric * (1 - s.transmission), fade = mirror_fade(mirror_roughness(s));
   const std::vector<Arriving> lights = interface_only ? std::vector<Arriving>() : lamps(s);
@@ -306,13 +325,15 @@ Vec ReferenceTracer::metallic_roughness(const Surface& s, const Ray& ray) const 
     color += color_of(scene_.ambient) * s.occlusion *
              (s.base * (diffuse * positive(1 - largest(fd(weight, nv)))) + fresnel(weight, nv) * (1 - fade));
   if (s.optics.reflects) {
-    const Answer answer = spawn(s, ray, reflected(s, s.n), s.optics.dielectric_cut ? exact : 1);
+    const Answer answer = spawn(s, ray, reflected(s, s.n), s.optics.dielectric_cut ? most : 1);
     color += fresnel(weight, nv) * fade * beer(s, s.inside, answer);
   }
   if (s.optics.refracts) {
     const auto bent = refracted_way(s, ior);
     if (!s.optics.bent || bent) {
-      const Answer answer = spawn(s, ray, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
+      Ray parted = ray;
+      if (s.optics.dispersion > 0) parted.channel = channel;
+      const Answer answer = spawn(s, parted, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
       const Vec filter = s.optics.volume && s.inside ? Vec(1, 1, 1) : s.base;
       color += filter * (dielectric * s.transmission * positive(1 - largest(fd(weight, nv)))) * beer(s, !s.inside, answer);
     }

@@ -44,6 +44,7 @@ class ReferenceTracer {
     double width = 0, spread = 0;  // of the ray cone
     std::uint32_t generation = 1;
     double fresnel = 1;  // product of the dielectric Fresnel terms so far
+    int channel = -1;    // of the light that counts; -1: all
   };
   struct Answer {
     Vec color{0, 0, 0};
@@ -104,6 +105,8 @@ class ReferenceTracer {
   [[nodiscard]] Vec environment(Vec direction) const;
   [[nodiscard]] Vec reflected(const Surface& s, Vec normal) const;
   [[nodiscard]] Vec metallic_roughness(const Surface& s, const Ray& ray) const;
+  /// The same as if the index of refraction were that of one channel; -1: of the middle.
+  [[nodiscard]] Vec metallic_roughness_of(int channel, const Surface& s, const Ray& ray) const;
   /// The refracted direction, if any: about the triangle's own normal where, inside, the bent one lets no light out.
   [[nodiscard]] static std::optional<Vec> refracted_way(const Surface& s, double ior);
   [[nodiscard]] Vec blinn_phong(const Surface& s, const Ray& ray) const;

@@ -33,7 +33,8 @@ struct Reader {
         light.filters.push_back({words[word++], hits[hit++]});
     }
     for (std::uint32_t branch = 0; branch < kBranches; ++branch)
-      if ((node.flags >> branch & 1U) != 0) node.children.push_back({static_cast<Branch>(branch), this->node()});
+      if ((branches_of(node.flags) >> branch & 1U) != 0)
+        node.children.push_back({static_cast<Branch>(branch), this->node()});
     return node;
   }
 };

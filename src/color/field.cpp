@@ -37,6 +37,7 @@ FieldMask changed_fields(const Material& a, const Material& b) {
   note(Field::emissive, a.emissive != b.emissive);
   note(Field::emissive_strength, a.emissive_strength != b.emissive_strength);
   note(Field::ior, a.ior != b.ior);
+  note(Field::dispersion, a.dispersion != b.dispersion);
   note(Field::transmission, a.transmission != b.transmission);
   note(Field::thickness, a.thickness != b.thickness);
   note(Field::attenuation_distance, a.attenuation_distance != b.attenuation_distance);
@@ -84,6 +85,8 @@ float field_value(const Material& m, Field field, unsigned component) {
       return m.emissive_strength;
     case Field::ior:
       return m.ior;
+    case Field::dispersion:
+      return m.dispersion;
     case Field::transmission:
       return m.transmission;
     case Field::thickness:

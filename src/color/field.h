@@ -20,6 +20,7 @@ enum class Field : std::uint8_t {
   emissive,
   emissive_strength,
   ior,
+  dispersion,
   transmission,
   thickness,
   attenuation_distance,

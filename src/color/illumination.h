@@ -47,7 +47,7 @@ struct NodeKey {
 struct ColorPart {
   Aspect aspect = Aspect::color;
   std::uint8_t sources = kAllSources;
-  std::uint8_t branches = 0xF;  // bit per Branch
+  std::uint8_t branches = kAllBranches;  // bit per Branch
   bool all_lamps = true;
   LightId lamp{};  // unless all: the only one, or none
 };

@@ -91,7 +91,7 @@ class Brush {
 
 /// Exact unpolarised Fresnel reflectance R as the weight between f0 and f90: (R - r0) / (1 - r0).
 Scalar exact_weight(SurfaceTerms& terms, Scalar cosine) {
-  const Scalar ior = max(terms.field(Field::ior), 1.0F);
+  const Scalar ior = max(terms.ior(), 1.0F);
   const Scalar eta = terms.key().inside ? 1.0F / ior : ior;
   const Scalar c = min(cosine, 1.0F);
   const Scalar cos2_out = 1.0F - (1.0F - c * c) / (eta * eta);
@@ -159,11 +159,11 @@ class BaseLayer {
       if (volume && t_.key().inside) seen = seen * t_.beer(child_length(Branch::reflection));
       sum = sum + seen;
     }
-    if (t_.has_child(Branch::refraction)) {
+    if (t_.has_child(t_.refraction())) {
       const Scalar share = (1.0F - metallic_) * transmission_ * passed(dielectric);
-      Triple seen = t_.child(Branch::refraction) * share;
+      Triple seen = t_.child(t_.refraction()) * share;
       if (!volume || !t_.key().inside) seen = seen * base_;  // a volume tints once, where it is entered
-      if (volume && !t_.key().inside) seen = seen * t_.beer(child_length(Branch::refraction));
+      if (volume && !t_.key().inside) seen = seen * t_.beer(child_length(t_.refraction()));
       sum = sum + seen;
     }
     return sum;
@@ -182,7 +182,7 @@ class BaseLayer {
     return t_.input(Input::child_length, static_cast<unsigned>(branch));
   }
   [[nodiscard]] Triple dielectric_f0() {
-    const Scalar ior = t_.field(Field::ior);
+    const Scalar ior = t_.ior();
     const Scalar root = (ior - 1.0F) / (ior + 1.0F);
     const Triple color = t_.textured3(Field::specular_color, Slot::specular_color) * (root * root);
     return Triple{min(color.x, 1.0F), min(color.y, 1.0F), min(color.z, 1.0F)} * specular_;
@@ -296,9 +296,8 @@ class CoatLayer {
   Scalar nv_, fresnel_;
 };
 
-}  // namespace
-
-Triple metallic_roughness_color(SurfaceTerms& terms) {
+/// For the index of refraction that `terms` takes.
+Triple layered_color(SurfaceTerms& terms) {
   BaseLayer base(terms);
   Triple sum = base.view_terms();
   if (terms.key().interface_only) return sum;
@@ -323,6 +322,25 @@ Triple metallic_roughness_color(SurfaceTerms& terms) {
     if (terms.has_child(Branch::coat)) sum = sum + coat.mirror();
   }
   return sum;
+}
+
+/// Does the material have an index of refraction for each channel?
+bool has_indices(SurfaceTerms& terms) {
+  ExpressionBuilder& b = terms.builder();
+  return b.shape(Field::dispersion).disperses && b.shape(Field::thickness).thick &&
+         b.shape(Field::transmission).transmits;
+}
+
+}  // namespace
+
+Triple metallic_roughness_color(SurfaceTerms& terms) {
+  if (!has_indices(terms)) return layered_color(terms);
+  const auto in = [&](Channel channel) {
+    terms.take(channel);
+    return layered_color(terms);
+  };
+  const Triple red = in(Channel::red), green = in(Channel::green), blue = in(Channel::blue);
+  return {red.x, green.y, blue.z};
 }
 
 }  // namespace relook

@@ -95,7 +95,7 @@ void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std
       continue;
     }
     NodeKey key = surface_key(scene, node.object(), node.inside());
-    key.children = static_cast<std::uint8_t>(node.flags & 0xFU);
+    key.children = node.branches();
     EntryReader entries(node.entries, shadow_bits);
     for (std::uint32_t light = 0; light < lights.size(); ++light) {
       const ShadowState state = shadow_state(node.lights, light);

@@ -41,6 +41,7 @@ MaterialStructure structure_of(const Material& material) {
                               material.clearcoat > 0,
                               material.anisotropy > 0,
                               material.iridescence > 0,
+                              material.dispersion > 0,
                               0,
                               0};
   for (std::size_t slot = 0; slot < kSlotCount; ++slot) {

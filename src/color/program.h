@@ -32,7 +32,8 @@ struct MaterialStructure {
   IlluminationModel model = IlluminationModel::metallic_roughness;
   AlphaMode alpha_mode = AlphaMode::opaque;
   // The value is not zero:
-  bool transmits = false, thick = false, sheen = false, clearcoat = false, anisotropic = false, iridescent = false;
+  bool transmits = false, thick = false, sheen = false, clearcoat = false, anisotropic = false, iridescent = false,
+       disperses = false;
   std::uint32_t textures = 0, procedurals = 0;  // bit per Slot: there is one; procedural
   auto operator<=>(const MaterialStructure&) const = default;
 };

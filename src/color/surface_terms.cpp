@@ -75,7 +75,8 @@ Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
     const Scalar reach2 = reach * reach;
     Scalar share = max(1.0F - reach2 * reach2, 0.0F) / distance2;
     if (kind == LightKind::spot) {
-      // Cosines near 1 have no digits left for narrow cones: 1 - cos is half the square of what lies between directions.
+      // Cosines near 1 have no digits left for narrow cones: 1 - cos is half the square of what lies between
+      // directions.
       const Triple beside = incidence.direction + axis;
       const Scalar versine = dot(beside, beside) * 0.5F;
       const Scalar inwards = of(LightField::outer_versine) - versine;
@@ -86,6 +87,13 @@ Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
   }
   if (visible.filtered) incidence.irradiance = incidence.irradiance * input3(Input::tint, visible.order << 4);
   return incidence;
+}
+
+Scalar SurfaceTerms::ior() {
+  const Scalar middle = field(Field::ior);
+  if (channel_ == Channel::all || channel_ == Channel::green) return middle;
+  const Scalar half_spread = (max(middle, 1.0F) - 1.0F) * (field(Field::dispersion) * 0.025F);
+  return channel_ == Channel::red ? max(middle - half_spread, min(middle, 1.0F)) : middle + half_spread;
 }
 
 Triple SurfaceTerms::beer(Scalar length) {

@@ -57,6 +57,13 @@ class SurfaceTerms {
   [[nodiscard]] Scalar child_alpha(Branch branch) {
     return input(Input::child, 3U | static_cast<unsigned>(branch) << 4);
   }
+  /// From here on the expression is that of light of one channel.
+  void take(Channel channel) { channel_ = channel; }
+  [[nodiscard]] Scalar ior();
+  /// The branch of the refracted ray: one of its own for each channel where colours part.
+  [[nodiscard]] Branch refraction() const {
+    return (key_.children & kPartedBranches) != 0 ? refracted(channel_) : Branch::refraction;
+  }
   /// Beer's law over `length` metres inside the material.
   [[nodiscard]] Triple beer(Scalar length);
 
@@ -66,6 +73,7 @@ class SurfaceTerms {
  private:
   ExpressionBuilder& b_;
   const NodeKey& key_;
+  Channel channel_ = Channel::all;
 };
 
 [[nodiscard]] inline Scalar fifth_power(Scalar m) {

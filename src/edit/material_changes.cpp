@@ -117,6 +117,7 @@ std::string describe_material_change(const Material& before, const Material& aft
   s.compare("emissive", before.emissive, after.emissive);
   s.compare("emissive strength", before.emissive_strength, after.emissive_strength);
   s.compare("index of refraction", before.ior, after.ior);
+  s.compare("dispersion", before.dispersion, after.dispersion);
   s.compare("transmission", before.transmission, after.transmission);
   s.compare("thickness", before.thickness, after.thickness);
   s.compare("attenuation distance", before.attenuation_distance, after.attenuation_distance);

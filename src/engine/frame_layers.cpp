@@ -96,12 +96,14 @@ NamedParts parts_by_light(const Scene& scene) {
 
 /// What the first hit does with the light.
 NamedParts parts_by_path() {
-  return {{"direct", {{.sources = kAmbientSource, .branches = 0}, true}},
-          {"reflected", {through({Branch::reflection, Branch::coat}), true}},
-          {"refracted", {through({Branch::refraction}), true}},
-          {"transparent", {through({Branch::transparency}), true}},
-          {"emitted", {{.sources = kEmissionSource, .branches = 0, .all_lamps = false}, true}},
-          {"background", {{.sources = kEnvironmentSource, .branches = 0, .all_lamps = false}, true}}};
+  return {
+      {"direct", {{.sources = kAmbientSource, .branches = 0}, true}},
+      {"reflected", {through({Branch::reflection, Branch::coat}), true}},
+      {"refracted",
+       {through({Branch::refraction, Branch::refracted_red, Branch::refracted_green, Branch::refracted_blue}), true}},
+      {"transparent", {through({Branch::transparency}), true}},
+      {"emitted", {{.sources = kEmissionSource, .branches = 0, .all_lamps = false}, true}},
+      {"background", {{.sources = kEnvironmentSource, .branches = 0, .all_lamps = false}, true}}};
 }
 
 }  // namespace

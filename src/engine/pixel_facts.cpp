@@ -6,7 +6,9 @@
 namespace relook {
 namespace {
 
-constexpr std::array<const char*, 5> kBranchNames{"reflection", "coat", "refraction", "transparency", "primary"};
+constexpr std::array<const char*, kBranches + 1> kBranchNames{
+    "reflection",         "coat",   "refraction", "transparency", "refraction of red", "refraction of green",
+    "refraction of blue", "primary"};
 
 std::string material_name(const Scene& scene, ObjectId id) {
   const std::string& name = scene.material(scene.object(id).material).name;

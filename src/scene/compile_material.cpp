@@ -163,6 +163,7 @@ void set_core(const Json& value, Material& m) {
 
 void set_extensions(const Json& extensions, Material& m) {
   m.ior = float_of(extensions["KHR_materials_ior"]["ior"]);
+  m.dispersion = float_of(extensions["KHR_materials_dispersion"]["dispersion"]);
   m.transmission = float_of(extensions["KHR_materials_transmission"]["transmissionFactor"]);
   const Json& volume = extensions["KHR_materials_volume"];
   m.thickness = float_of(volume["thicknessFactor"]);

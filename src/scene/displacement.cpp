@@ -96,8 +96,7 @@ void subdivide(Mesh& mesh) {
 float height_at(const Mesh& mesh, const TextureSlot& slot, Mapping mapping, std::uint32_t vertex) {
   const Point at = vertex_coordinates(mesh, slot, mapping, vertex);
   if (slot.kind == TextureKind::none) return 1;
-  if (slot.kind == TextureKind::image)
-    return sample(*slot.pyramid, transformed_uv(slot, at), 0, slot.sampler).r;
+  if (slot.kind == TextureKind::image) return sample(*slot.pyramid, transformed_uv(slot, at), 0, slot.sampler).r;
   if (mapping == Mapping::solid) return evaluate(slot.procedural, at).r;
   const Uv uv = transformed_uv(slot, at);
   return evaluate(slot.procedural, Point(uv.x, uv.y, 0)).r;

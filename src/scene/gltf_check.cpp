@@ -11,9 +11,10 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 22> kSupportedExtensions = {
+constexpr std::array<std::string_view, 23> kSupportedExtensions = {
     "KHR_lights_punctual",
     "KHR_materials_ior",
+    "KHR_materials_dispersion",
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_specular",

@@ -110,6 +110,7 @@ const Schema& normal_texture() {
 
 const Schema& material_extensions() {
   static const Schema ior{{or_zero(number("ior", 1.5, 1, kLargest))}};
+  static const Schema dispersion{{number("dispersion", 0.0, 0, kLargest)}};
   static const Schema transmission{
       {number("transmissionFactor", 0.0, 0, 1), optional("transmissionTexture", plain_texture())}};
   static const Schema volume{{number("thicknessFactor", 0.0, 0, kLargest), optional("thicknessTexture", plain_texture()),
@@ -136,7 +137,8 @@ const Schema& material_extensions() {
   static const Schema emissive_strength{{number("emissiveStrength", 1.0, 0, kLargest)}};
   static const Schema unlit{};
   static const Schema extensions{
-      {implied("KHR_materials_ior", ior), implied("KHR_materials_transmission", transmission),
+      {implied("KHR_materials_ior", ior), implied("KHR_materials_dispersion", dispersion),
+       implied("KHR_materials_transmission", transmission),
        implied("KHR_materials_volume", volume), implied("KHR_materials_specular", specular),
        implied("KHR_materials_clearcoat", clearcoat), implied("KHR_materials_sheen", sheen),
        implied("KHR_materials_anisotropy", anisotropy), implied("KHR_materials_iridescence", iridescence),

@@ -70,6 +70,7 @@ struct Material {
   Color emissive{0, 0, 0};                 // emissiveFactor
   float emissive_strength = 1;
   float ior = 1.5F;                        // KHR_materials_ior; also of blinn-phong refraction
+  float dispersion = 0;                    // 20 / Abbe number; of a volume
   float transmission = 0;
   float thickness = 0;                     // > 0: a volume, otherwise thin-walled
   float attenuation_distance = std::numeric_limits<float>::infinity();  // metres

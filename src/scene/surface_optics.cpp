@@ -65,6 +65,7 @@ SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
   optics.culls_back = !material.double_sided;
   optics.passes_light = optics.refracts || optics.transparent;
   optics.ior = optics.refracts ? std::max(material.ior, 1.0F) : 1;
+  optics.dispersion = optics.volume ? material.dispersion : 0;
   return optics;
 }
 

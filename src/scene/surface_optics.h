@@ -22,6 +22,7 @@ struct SurfaceOptics {
   bool cut_out = false;         // alpha MASK: holes in visibility
   bool culls_back = false;      // single-sided: no ray meets its back faces
   float ior = 1;                // 1 unless refracts
+  float dispersion = 0;         // 0 unless volume
 
   [[nodiscard]] bool spawns() const { return reflects || coat_reflects || refracts || transparent; }
   bool operator==(const SurfaceOptics&) const = default;

@@ -49,8 +49,8 @@ struct TextureSampler {
 /// of level 0, clamped to the pyramid. Non-finite uv reads (0, 0).
 [[nodiscard]] Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler);
 
-/// Builds the pyramid from level 0. texels: width * height * 4 values in [0, 255], row 0 on top. Box filter in the linear
-/// domain.
+/// Builds the pyramid from level 0. texels: width * height * 4 values in [0, 255], row 0 on top. Box filter in the
+/// linear domain.
 [[nodiscard]] TexturePyramid build_pyramid(TexelFormat format, std::uint32_t width, std::uint32_t height,
                                            std::vector<std::uint8_t> texels);
 [[nodiscard]] TexturePyramid build_pyramid(std::uint32_t width, std::uint32_t height, std::vector<float> texels);

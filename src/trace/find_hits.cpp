@@ -70,7 +70,7 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
   const RayObject& then = respawns ? change_.before[change_.before_index[node.object.index()]] : object;
   if (!then.optics.spawns() && stored.children() == 0) return;
   const Spawned old = spawn(node, then, g_.max_depth);
-  if (old.mask != (stored.flags & 0xFU)) refuse_trees();
+  if (old.mask != stored.branches()) refuse_trees();
   Spawned rays = old;
   if (respawns || now.fresnel_product != node.ray.fresnel_product) {
     RayNode as_now = node;

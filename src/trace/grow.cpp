@@ -48,7 +48,7 @@ class Expander {
     }
     if (!grower_.grow().scene.object(node.object()).optics.spawns() && node.children() == 0) return index;
     const Spawned rays = grower_.spawned(index);
-    if (rays.mask != (node.flags & 0xFU)) refuse_trees();
+    if (rays.mask != node.branches()) refuse_trees();
     grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
   }

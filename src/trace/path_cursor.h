@@ -11,6 +11,17 @@ namespace relook {
 
 inline constexpr std::uint32_t kInsideFlag = 1U << 4;
 inline constexpr std::uint32_t kCutShift = 8;
+inline constexpr std::uint32_t kKnownFlags = (std::uint32_t{kAllBranches} << kCutShift) | 0xFFU;
+
+/// Branches as the flags of a node hold them, and back.
+[[nodiscard]] constexpr std::uint32_t branch_flags(std::uint8_t mask) {
+  return (mask & 0xFU) | (mask & std::uint32_t{kPartedBranches}) << 1;
+}
+[[nodiscard]] constexpr std::uint8_t branches_of(std::uint32_t flags) {
+  return static_cast<std::uint8_t>((flags & 0xFU) | (flags >> 1 & kPartedBranches));
+}
+static_assert(branches_of(branch_flags(kAllBranches)) == kAllBranches);
+static_assert((branch_flags(kAllBranches) & kInsideFlag) == 0);
 
 [[nodiscard]] inline ShadowState shadow_state(std::span<const std::uint32_t> light_words, std::size_t light) {
   return static_cast<ShadowState>((light_words[light / 16] >> (2 * (light % 16))) & 3U);
@@ -63,8 +74,9 @@ struct PathNode {
 
   [[nodiscard]] bool is_miss() const { return object_word == PathTable::kMissWord; }
   [[nodiscard]] ObjectId object() const { return ObjectId(object_word); }
-  [[nodiscard]] bool has_child(Branch branch) const { return (flags >> static_cast<unsigned>(branch) & 1U) != 0; }
-  [[nodiscard]] unsigned children() const { return static_cast<unsigned>(std::popcount(flags & 0xFU)); }
+  [[nodiscard]] std::uint8_t branches() const { return branches_of(flags); }
+  [[nodiscard]] bool has_child(Branch branch) const { return (branches() >> static_cast<unsigned>(branch) & 1U) != 0; }
+  [[nodiscard]] unsigned children() const { return static_cast<unsigned>(std::popcount(branches())); }
   /// The ray that leads here, and those to lights.
   [[nodiscard]] std::uint32_t segments() const { return 1 + shadow_segments; }
   [[nodiscard]] bool inside() const { return (flags & kInsideFlag) != 0; }

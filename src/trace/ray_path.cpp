@@ -86,8 +86,8 @@ std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words,
     if (object >= objects) broken.push_back("object index out of range");
     if (!left(1 + light_words)) return {"a node is cut short"};
     const std::uint32_t flags = words[i++];
-    if ((flags & ~0x0F1FU) != 0) broken.push_back("unknown flags");
-    expected += static_cast<std::size_t>(std::popcount(flags & 0xFU));
+    if ((flags & ~kKnownFlags) != 0) broken.push_back("unknown flags");
+    expected += static_cast<std::size_t>(std::popcount(branches_of(flags)));
     const std::size_t states = i;
     i += light_words;
     for (std::size_t light = 0; light < layout.lights; ++light) {

@@ -11,11 +11,13 @@
 namespace relook {
 
 /// The branches from the eye to a node, as one number: 0 the eye, 1 the hit of the primary ray, 4 h + 1 + branch a
-/// child of h. Histories that would leave 28 bits are their parent's: such a section encloses all that is below it.
+/// child of h; where colours part, the three refracted rays share the number of one. Histories that would leave 28 bits
+/// are their parent's: such a section encloses all that is below it.
 using History = std::uint32_t;
 inline constexpr History kEye = 0, kPrimary = 1;
 [[nodiscard]] inline History child_of(History parent, Branch branch) {
-  const History child = 4 * parent + 1 + static_cast<History>(branch);
+  const Branch kind = branch >= Branch::refracted_red && branch <= Branch::refracted_blue ? Branch::refraction : branch;
+  const History child = 4 * parent + 1 + static_cast<History>(kind);
   return child < (1U << 28) ? child : parent;
 }
 [[nodiscard]] inline History parent_of(History history) { return (history - 1) / 4; }

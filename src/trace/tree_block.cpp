@@ -31,6 +31,13 @@ Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, f
   return mapped_normal(tangent_frame(object, node.hit, node.point, map), node.point, texel, scale);
 }
 
+/// The index of refraction for a channel; all of them: that of the middle.
+float channel_ior(const SurfaceOptics& optics, Channel channel) {
+  const float half_spread = (optics.ior - 1.0F) * (0.025F * optics.dispersion);
+  if (channel == Channel::red) return std::fmax(optics.ior - half_spread, 1.0F);
+  return channel == Channel::blue ? optics.ior + half_spread : optics.ior;
+}
+
 Direction unit(const Direction& v) { return v / std::sqrt(v.dot(v)); }
 
 /// The mirror direction, kept on the outer side of the geometric surface.
@@ -85,6 +92,7 @@ class Spawner {
     ray.fresnel_product = product;
     ray.generation = static_cast<std::uint8_t>(node_.ray.generation + 1);
     ray.branch = branch;
+    ray.channel = channel_of(branch, node_.ray.channel);
     spawned_.mask |= bit;
     return &ray;
   }
@@ -105,38 +113,54 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
   const Direction d = node.ray.direction;
   const Normal n = normal_of_slot(node, object, Slot::normal, material.normal_scale);
   const float cosine = std::fmax(-d.dot(n), 1e-4F);
-  const float eta = node.point.inside && optics.bent ? 1.0F / optics.ior : optics.ior;
+  const bool parts = optics.dispersion > 0 && node.ray.channel == Channel::all;
+  const auto eta_of = [&](Channel channel) {
+    const float ior = channel_ior(optics, channel);
+    return node.point.inside && optics.bent ? 1.0F / ior : ior;
+  };
   // From the inside of a smooth solid, light leaves where the triangle or its vertex normals let it.
   const float flat_cosine = node.point.inside ? -d.dot(node.point.geometric) : 0.0F;
-  const float reflectance =
-      optics.refracts ? dielectric_reflectance(std::fmin(std::fmax(cosine, flat_cosine), 1.0F), eta) : 1.0F;
+  const auto reflectance_of = [&](float eta) {
+    return optics.refracts ? dielectric_reflectance(std::fmin(std::fmax(cosine, flat_cosine), 1.0F), eta) : 1.0F;
+  };
+  const float own_eta = eta_of(node.ray.channel), reflectance = reflectance_of(own_eta);
   const float counted = optics.dielectric_cut ? 1.0F : 0.0F;
   const auto factor = [&](float term) { return 1.0F - counted + counted * term; };
 
-  if (optics.reflects) spawner.add(Branch::reflection, mirrored(d, n, node.point.geometric), 1.0F, factor(reflectance));
+  if (optics.reflects) {
+    float most = reflectance;
+    if (parts)
+      for (const Channel channel : kChannels) most = std::fmax(most, reflectance_of(eta_of(channel)));
+    spawner.add(Branch::reflection, mirrored(d, n, node.point.geometric), 1.0F, factor(most));
+  }
   if (optics.coat_reflects && !node.point.inside) {
     const Normal coat = normal_of_slot(node, object, Slot::clearcoat_normal, material.clearcoat_normal_scale);
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
                 coat_reflectance(std::fmin(std::fmax(-d.dot(coat), 1e-4F), 1.0F)));
   }
-  if (optics.refracts && !optics.bent) spawner.add_straight(Branch::refraction, factor(1.0F - reflectance));
-  if (optics.bent) {
+  const auto refract = [&](Branch branch, float eta, float passed) {
+    if (!optics.bent) return spawner.add_straight(branch, passed);
     const auto sin2_behind = [&](float c) { return (1.0F - c * c) / (eta * eta); };
     const bool is_flat = flat_cosine > cosine && sin2_behind(std::fmin(cosine, 1.0F)) >= 1.0F;
     const float c = std::fmin(is_flat ? flat_cosine : cosine, 1.0F);
     const float sin2 = sin2_behind(c);
-    if (sin2 < 1.0F) {
-      const Normal& towards = is_flat ? node.point.geometric : n;
-      const Direction bent = d * (1.0F / eta) + towards * (c / eta - std::sqrt(1.0F - sin2));
-      // A bent shading normal may send the ray back to its own side: then it goes straight on.
-      const bool goes_through = bent.dot(node.point.geometric) < 0;
-      if (goes_through)
-        spawner.add(Branch::refraction, unit(bent), -1.0F, factor(1.0F - reflectance));
-      else
-        spawner.add_straight(Branch::refraction, factor(1.0F - reflectance));
-    }
-  }
+    if (sin2 >= 1.0F) return;
+    const Normal& towards = is_flat ? node.point.geometric : n;
+    const Direction bent = d * (1.0F / eta) + towards * (c / eta - std::sqrt(1.0F - sin2));
+    // A bent shading normal may send the ray back to its own side: then it goes straight on.
+    const bool goes_through = bent.dot(node.point.geometric) < 0;
+    if (goes_through)
+      spawner.add(branch, unit(bent), -1.0F, passed);
+    else
+      spawner.add_straight(branch, passed);
+  };
+  if (optics.refracts && !parts) refract(Branch::refraction, own_eta, factor(1.0F - reflectance));
   if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
+  if (optics.refracts && parts)
+    for (const Channel channel : kChannels) {
+      const float eta = eta_of(channel);
+      refract(refracted(channel), eta, factor(1.0F - reflectance_of(eta)));
+    }
   return spawner.result();
 }
 
@@ -210,10 +234,11 @@ void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, 
       words.push_back(PathTable::kMissWord);
       continue;
     }
-    std::uint32_t flags = node.point.inside ? 1U << 4 : 0U;
+    std::uint8_t branches = 0;
     for (std::size_t b = 0; b < kBranches; ++b)
-      if (node.child[b] != kNoNode) flags |= 1U << b;
-    flags |= static_cast<std::uint32_t>(node.cut_mask) << 8;
+      if (node.child[b] != kNoNode) branches = static_cast<std::uint8_t>(branches | 1U << b);
+    const std::uint32_t flags = branch_flags(branches) | (node.point.inside ? kInsideFlag : 0U) |
+                                static_cast<std::uint32_t>(node.cut_mask) << kCutShift;
     words.push_back(node.object.index());
     words.push_back(flags);
     hits.push_back(node.hit);

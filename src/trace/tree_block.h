@@ -25,6 +25,7 @@ struct SpawnedRay {
   float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
   std::uint8_t generation = 1;    // 1: primary
   Branch branch = Branch::primary;
+  Channel channel = Channel::all;                      // follows from the branches that lead here
   float start = 0;                                     // metres: nothing is met before
   float end = std::numeric_limits<float>::infinity();  // nor after
   Meeting behind{};           // the hit that it goes straight on from; t NaN: not known; object none: no such hit
@@ -49,7 +50,7 @@ struct RayNode {
       : parent(above), sample(of_sample), ray(way) {}
 
   std::uint32_t parent;
-  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode};
+  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode};
   std::uint32_t sample;  // within the tile
   ObjectId object;       // none: miss
   Hit hit;
