@@ -151,12 +151,15 @@ TEST_F(PackedMeshes, primitives_share_draco_data) {
   EXPECT_TRUE(got.meshes[0][1].uv[0].empty());
 }
 
-TEST_F(PackedMeshes, fewer_draco_vertices_than_declared_are_taken_with_a_warning) {
-  SceneFile file = draco_square();
-  file.gltf["accessors"][0]["count"] = file.gltf["accessors"][2]["count"] = 9;
-  const ImportedGltf got = imported(file);
-  expect_square(got.meshes.at(0).at(0));
-  EXPECT_EQ(got.warnings.size(), 1U);
+TEST_F(PackedMeshes, draco_vertices_count_whatever_accessors_say) {
+  for (const int declared : {3, 9}) {
+    SceneFile file = draco_square();
+    file.gltf["accessors"][0]["count"] = file.gltf["accessors"][2]["count"] = declared;
+    const ImportedGltf got = imported(file);
+    expect_square(got.meshes.at(0).at(0));
+    ASSERT_EQ(got.warnings.size(), 1U);
+    EXPECT_NE(got.warnings[0].find("2 triangles and 4 vertices, its accessors say otherwise"), std::string::npos);
+  }
 }
 
 struct Change {
@@ -183,9 +186,6 @@ TEST_F(PackedMeshes, what_is_wrong_about_draco_data_is_said) {
   SceneFile few = draco_square();
   few.gltf["accessors"][1]["count"] = 3;
   EXPECT_EQ(refusal(few), packed + ": the Draco data has 2 triangles, its accessors have 1");
-  few.gltf["accessors"][1]["count"] = 6;
-  few.gltf["accessors"][0]["count"] = few.gltf["accessors"][2]["count"] = 3;
-  EXPECT_EQ(refusal(few), packed + ": the Draco data has 4 vertices, its accessors have 3");
   SceneFile mode = draco_square();
   mode.primitive()["mode"] = 6;
   EXPECT_EQ(refusal(mode), "/meshes/0/primitives/0/mode: Draco data holds triangles and strips alone");

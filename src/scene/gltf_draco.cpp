@@ -61,7 +61,8 @@ std::uint64_t declared_faces(const DracoUse& use, const GltfModel& model) {
   return use.primitive->mode == 5 ? indices : indices / 3;  // a strip's indices are as many as its triangles, and two
 }
 
-/// The most that any of the primitives declares.
+/// The most that any of the primitives declares. Encoders split vertices at seams and forget to say so: as many as
+/// corners are allowed.
 DracoLimits limits_of(const std::vector<DracoUse>& uses, const GltfModel& model) {
   DracoLimits limits;
   for (const DracoUse& use : uses) {
@@ -69,6 +70,7 @@ DracoLimits limits_of(const std::vector<DracoUse>& uses, const GltfModel& model)
     for (const auto& [name, accessor] : use.primitive->attributes)
       limits.points = std::max<std::uint64_t>(limits.points, model.accessors[accessor].count);
   }
+  limits.points = std::max(limits.points, 3 * limits.faces);
   return limits;
 }
 
@@ -89,7 +91,7 @@ class DracoSource {
       : model_(model), mesh_(mesh), share_(share) {}
 
   void give(const DracoUse& use, std::vector<std::string>& warnings) {
-    warn_of_fewer(use, warnings);
+    warn_of_counts(use, warnings);
     for (const auto& [name, id] : use.attributes) {
       const JsonView place = use.packed.at("attributes").at(name);
       std::size_t& accessor = use.primitive->attributes.at(name);
@@ -106,23 +108,18 @@ class DracoSource {
   }
 
  private:
-  /// The other count, too, when it is not what the file says: it is what its encoder kept.
-  void warn_of_fewer(const DracoUse& use, std::vector<std::string>& warnings) const {
+  /// What the encoder kept counts, not what the accessors say.
+  void warn_of_counts(const DracoUse& use, std::vector<std::string>& warnings) const {
     const std::uint64_t faces = declared_faces(use, model_);
     if (mesh_.faces() > faces)
       use.packed.fail("the Draco data has " + std::to_string(mesh_.faces()) + " triangles, the indices are " +
                       std::to_string(model_.accessors[use.indices].count));
-    bool has_fewer = use.primitive->mode == 4 && mesh_.faces() < faces;
-    for (const auto& [name, id] : use.attributes) {
-      const std::uint64_t count = model_.accessors[use.primitive->attributes.at(name)].count;
-      if (mesh_.points() > count)
-        use.packed.fail("the Draco data has " + std::to_string(mesh_.points()) + " vertices, " + name + " has " +
-                        std::to_string(count));
-      has_fewer = has_fewer || mesh_.points() < count;
-    }
-    if (has_fewer)
+    bool is_other = use.primitive->mode == 4 && mesh_.faces() < faces;
+    for (const auto& [name, id] : use.attributes)
+      is_other = is_other || mesh_.points() != model_.accessors[use.primitive->attributes.at(name)].count;
+    if (is_other)
       warnings.push_back(use.packed.pointer() + ": the Draco data has " + std::to_string(mesh_.faces()) +
-                         " triangles and " + std::to_string(mesh_.points()) + " vertices, less than its accessors say");
+                         " triangles and " + std::to_string(mesh_.points()) + " vertices, its accessors say otherwise");
   }
 
   std::size_t column(std::uint32_t id, const GltfAccessor& declared, const JsonView& place) {
