@@ -43,12 +43,12 @@ Scalar square(Scalar x) { return x * x; }
 Scalar schlick_of(Scalar r0, Scalar weight) { return r0 + (1.0F - r0) * weight; }
 
 /// Of one channel: sums of the reflections within the film.
-struct Channel {
+struct FilmChannel {
   Scalar mean;           // what does not interfere
   Scalar first, second;  // what interferes once and twice
   Scalar sign;           // of `first`
 };
-Channel channel(Scalar f0, Scalar film_ior, Scalar r12, Scalar weight_below) {
+FilmChannel channel(Scalar f0, Scalar film_ior, Scalar r12, Scalar weight_below) {
   const Scalar root = sqrt(min(f0 + 1e-4F, 0.9999F));
   const Scalar base_ior = (1.0F + root) / (1.0F - root);
   const Scalar r23 = schlick_of(square((base_ior - film_ior) / (base_ior + film_ior)), weight_below);
@@ -68,8 +68,8 @@ Triple film_fresnel(const ThinFilm& film, const Triple& f0, Scalar cosine) {
   const Scalar cos_below = sqrt(max(1.0F - (1.0F - c * c) / (film.ior * film.ior), 0.0F));
   const Scalar r12 = schlick_of(square((film.ior - 1.0F) / (film.ior + 1.0F)), schlick(c));
   const Scalar weight_below = schlick(cos_below);
-  const Channel red = channel(f0.x, film.ior, r12, weight_below), green = channel(f0.y, film.ior, r12, weight_below),
-                blue = channel(f0.z, film.ior, r12, weight_below);
+  const auto of = [&](Scalar f) { return channel(f, film.ior, r12, weight_below); };
+  const FilmChannel red = of(f0.x), green = of(f0.y), blue = of(f0.z);
   const Scalar path = min(film.ior * max(film.thickness, 0.0F) * cos_below * 2.0F, kLongestPath);
   const Scalar one = number(c, 1);
   const Triple once = interference(path, {red.sign, green.sign, blue.sign}) * number(c, 2);

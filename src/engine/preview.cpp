@@ -136,17 +136,17 @@ void PreviewEncoder::update(const Frame& frame, const ChangedPixels& changed_pix
 
 /// Rows of 3 bytes a pixel, each led by its filter (1: differences to the left neighbour).
 std::vector<unsigned char> PreviewEncoder::filtered_rows(std::size_t band) const {
-  constexpr std::size_t kChannels = 3;
-  const std::size_t row_bytes = std::size_t{width_} * kChannels;
+  constexpr std::size_t kCodes = 3;
+  const std::size_t row_bytes = std::size_t{width_} * kCodes;
   const std::size_t first_row = band * kBandRows;
   std::vector<unsigned char> rows((1 + row_bytes) * (end_row(band) - first_row));
   unsigned char* out = rows.data();
   for (std::size_t y = first_row; y < end_row(band); ++y, out += row_bytes) {
     const unsigned char* codes = &codes_[y * row_bytes];
     *out++ = 1;
-    std::copy_n(codes, kChannels, out);
-    for (std::size_t i = kChannels; i < row_bytes; ++i)
-      out[i] = static_cast<unsigned char>(codes[i] - codes[i - kChannels]);
+    std::copy_n(codes, kCodes, out);
+    for (std::size_t i = kCodes; i < row_bytes; ++i)
+      out[i] = static_cast<unsigned char>(codes[i] - codes[i - kCodes]);
   }
   return rows;
 }
