@@ -215,7 +215,7 @@ TEST(Surfaces, what_cannot_be_seen_is_named) {
   scene.light("Bulb", {{"type", "point"}}, {{"scale", {0, 0, 0}}});
   Json textured = lambert();
   textured["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", scene.procedural_texture("Nothing", {{"kind", "noise"}})}};
-  scene.material("Printed", textured);
+  card(scene, "Page", 1, textured, {{"translation", {0, 0, -1}}});
   scene.look_at(Point(0, 0, 1), Point(0, 0, 0), 60, 8, 8);
   LookDocument document = scene.state().document();
   document.look["textures"]["Nothing"].erase("extras");
@@ -223,7 +223,7 @@ TEST(Surfaces, what_cannot_be_seen_is_named) {
   ASSERT_EQ(warnings.size(), 3U);
   EXPECT_NE(warnings[0].find("\"Line\""), std::string::npos) << warnings[0];
   EXPECT_NE(warnings[1].find("\"Torch\""), std::string::npos) << warnings[1];
-  EXPECT_NE(warnings[2].find("\"Printed\""), std::string::npos) << warnings[2];
+  EXPECT_NE(warnings[2].find("\"Page\""), std::string::npos) << warnings[2];
 }
 
 }  // namespace

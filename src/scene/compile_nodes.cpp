@@ -176,7 +176,6 @@ bool Compilation::visit_node(const std::string& name, const Json& node, NodeReco
     world = world * parent.world;
     visible = visible && parent.visible;
   }
-  if (!is_in_range(world)) fail(node_pointer(name), "the node's place in the world is out of range (1e12)");
   const bool is_changed = !record.is_compiled || record.visible != visible || record.world != world;
   record.world = world;
   record.visible = visible;
@@ -219,7 +218,15 @@ Pose Compilation::pose_of(const Json& node) const {
   const Json& skin = document_.look["skins"][name->get_ref<const std::string&>()];
   const auto& key = skin["extras"]["relook"]["inverseBinds"].get_ref<const std::string&>();
   return posed(skin, document_.inverse_binds.find(key)->second,
-               [&](const std::string& joint) { return index_.nodes.at(joint).world; });
+               [&](const std::string& joint) {
+                 require_range(index_.nodes.at(joint).world, joint);
+                 return index_.nodes.at(joint).world;
+               });
+}
+
+/// Of what stands in the world: a node that carries nothing may be anywhere.
+void Compilation::require_range(const WideTransform& world, const std::string& node) const {
+  if (!is_in_range(world)) fail(node_pointer(node), "the node's place in the world is out of range (1e12)");
 }
 
 /// Local matrices of EXT_mesh_gpu_instancing, or nullptr.
@@ -262,8 +269,7 @@ void Compilation::update_objects(const std::string& name, const Json& node, Node
         const WideTransform world = is_skinned             ? WideTransform().setTranslation(pose.place)
                                     : instances == nullptr ? record.world
                                                            : widened((*instances)[object.instance]) * record.world;
-        if (instances != nullptr && !is_in_range(world))
-          fail(node_pointer(name), "an instance's place in the world is out of range (1e12)");
+        require_range(world, name);
         object.to_world = rounded(world, scene_.camera.eye);
         object.alive = record.visible && dimensions_of(object.to_world) >= 2;
         const ObjectId id = object_slot(name, object.primitive, object.instance);
@@ -337,6 +343,7 @@ void Compilation::update_light(const std::string& name, const Json& node, NodeRe
   Light light = compile_light(context_.file, light_name, document_.look["lights"][light_name],
                               "/lights/" + escape_token(light_name));
   light.node = name;
+  require_range(record.world, name);
   const Imath::V3d back(record.world[2][0], record.world[2][1], record.world[2][2]);
   const double length = std::sqrt(back.x * back.x + back.y * back.y + back.z * back.z);
   const bool has_direction = length > 1e-12;

@@ -109,6 +109,7 @@ class Compilation {
   void note_skins_of(const std::string& joint);
   void update_skinned();
   [[nodiscard]] Pose pose_of(const Json& node) const;
+  void require_range(const WideTransform& world, const std::string& node) const;
   void update_light(const std::string& name, const Json& node, NodeRecord& record);
   ObjectId object_slot(const std::string& node, std::uint32_t primitive, std::uint32_t instance);
   void set_object(ObjectId id, Object value);

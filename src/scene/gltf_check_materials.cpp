@@ -26,7 +26,6 @@ void check_image(const JsonView& root, const JsonView& image) {
   const auto view = optional_reference(image, "bufferView", array_size(root, "bufferViews"), "buffer view");
   if (!view) return;
   if (uri) image.fail("has both a uri and a buffer view");
-  if (!mime_type) image.fail("\"mimeType\" is missing");
   if (root.at("bufferViews").at(*view).has("byteStride"))
     image.at("bufferView").fail("the buffer view of an image may not have a byteStride");
 }

@@ -79,7 +79,8 @@ void decode_joints(const PrimitiveSource& source, Mesh& mesh) {
   mesh.joint_weights.resize(vertices * influences);
   for (std::size_t set = 0; set < sets; ++set) {
     const GltfAccessor& joints = *source.accessor(joints_of(set));
-    if ((joints.component != Component::u8 && joints.component != Component::u16) || joints.normalized)
+    if (source.is_skinned &&
+        ((joints.component != Component::u8 && joints.component != Component::u16) || joints.normalized))
       source.fail(attribute_place(joints_of(set)), "joints must be unsigned integers of 8 or 16 bits");
     constexpr float kMostJoint = 65535, kLargestWeight = 1e6F;
     const auto indices = attribute(source, joints_of(set), {kSetWidth, kSetWidth, true, false}, kMostJoint,

@@ -141,7 +141,8 @@ void replace_missing_normals(Mesh& mesh) {
 }
 
 void decode_normals(const PrimitiveSource& source, Mesh& mesh) {
-  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kAnySize, source.is_used);
+  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kAnySize,
+                                source.is_used && source.read.is_lit);
   mesh.normals.reserve(values.size() / 3);
   for (std::size_t i = 0; i < values.size(); i += 3)
     mesh.normals.push_back(normalized(values[i], values[i + 1], values[i + 2]));

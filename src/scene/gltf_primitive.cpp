@@ -9,15 +9,13 @@
 namespace relook {
 namespace {
 
-void check_format(const PrimitiveSource& source, const GltfAccessor& accessor, const std::string& place,
-                  const ColumnFormat& format) {
+bool fits(const GltfAccessor& accessor, const ColumnFormat& format) {
   const bool is_float = accessor.component == Component::f32;
   const bool is_signed = accessor.component == Component::i8 || accessor.component == Component::i16;
-  const bool fits = accessor.width >= format.least_width && accessor.width <= format.most_width &&
-                    accessor.component != Component::u32 &&
-                    (is_float || (format.integers && (accessor.normalized || !format.only_normalized) &&
-                                  (is_signed || !format.only_signed)));
-  if (!fits) source.fail(place, "the accessor's type is not one that this attribute may have");
+  return accessor.width >= format.least_width && accessor.width <= format.most_width &&
+         accessor.component != Component::u32 &&
+         (is_float || (format.integers && (accessor.normalized || !format.only_normalized) &&
+                       (is_signed || !format.only_signed)));
 }
 
 }  // namespace
@@ -43,7 +41,12 @@ std::string attribute_place(std::string_view semantic) { return "/attributes/" +
 
 std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& accessor, const std::string& place,
                              const ColumnFormat& format, float largest, bool is_read) {
-  check_format(source, accessor, place, format);
+  if (!fits(accessor, format)) {
+    constexpr std::string_view kFault = "the accessor's type is not one that this attribute may have";
+    if (is_read) source.fail(place, kFault);
+    source.forgive(place, std::string(kFault) + ": the column is ignored");
+    return {};
+  }
   if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail(place, fault);
   std::vector<float> values = read_floats(source.model, accessor, source.vertices);
   const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });

@@ -57,7 +57,8 @@ std::vector<std::vector<Transform>> decode_skins(Json& gltf, const GltfModel& mo
   std::vector<bool> is_shown(node_count, false), is_used(array_size(root, "skins"), false);
   for (const std::size_t node : active_nodes(gltf)) {
     is_shown[node] = true;
-    if (const auto skin = member(root.at("nodes").at(node), "skin"))
+    const JsonView place = root.at("nodes").at(node);
+    if (const auto skin = member(place, "skin"); skin && place.has("mesh"))
       is_used[reference(*skin, is_used.size(), "skin")] = true;
   }
   for_each_object(root, "skins", [&](const JsonView& skin, std::size_t number) {

@@ -60,7 +60,11 @@ void read_glb(BytesView file, GltfSource& source) {
   const BytesView bytes = glb_content(file, source);
   std::size_t offset = kGlbHeaderBytes;
   for (std::size_t index = 0; offset < bytes.size(); ++index) {
-    if (bytes.size() - offset < kChunkHeaderBytes) fail_at(source.file, offset, "a chunk header is cut short");
+    if (bytes.size() - offset < kChunkHeaderBytes) {
+      if (index == 0) fail_at(source.file, offset, "a chunk header is cut short");
+      tolerate(source.file, "byte " + std::to_string(offset), "a chunk header is cut short", source.warnings);
+      break;
+    }
     const std::size_t length = little_endian_32(bytes, offset);
     const std::uint32_t type = little_endian_32(bytes, offset + 4);
     if (length % 4 != 0) fail_at(source.file, offset, "the chunk's length is not a multiple of 4");
@@ -89,9 +93,12 @@ std::array<std::int8_t, 256> base64_digits() {
   return digits;
 }
 
-/// RFC 4648; the padding may be left out, anything else is an error.
-Bytes base64_decoded(std::string_view text, const JsonView& place) {
-  while (!text.empty() && text.back() == '=') text.remove_suffix(1);
+bool is_white_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
+
+/// RFC 4648; the padding may be left out, lines may be broken, anything else is an error.
+Bytes base64_decoded(std::string text, const JsonView& place) {
+  std::erase_if(text, is_white_space);
+  while (!text.empty() && text.back() == '=') text.pop_back();
   if (text.size() % 4 == 1) place.fail("the base64 data is cut short");
   const auto digits = base64_digits();
   Bytes bytes;
@@ -126,9 +133,9 @@ Bytes data_uri_content(std::string_view uri, const JsonView& place) {
   const std::string_view header = uri.substr(0, comma), content = uri.substr(comma + 1);
   if (header.find(";;") != std::string_view::npos) place.fail("a data URI with an empty parameter");
   constexpr std::string_view kBase64 = ";base64";
-  if (header.size() >= kBase64.size() && is_same_word(header.substr(header.size() - kBase64.size()), kBase64))
-    return base64_decoded(content, place);
   const std::string plain = percent_decoded(content, place.file(), place.pointer());
+  if (header.size() >= kBase64.size() && is_same_word(header.substr(header.size() - kBase64.size()), kBase64))
+    return base64_decoded(plain, place);
   const BytesView bytes = bytes_of(plain);
   return {bytes.begin(), bytes.end()};
 }
@@ -187,7 +194,7 @@ class ImageLoader {
     if (!uri) return nullptr;
     const std::string text = uri->text();
     auto bytes = is_data_uri(text) ? kept(data_uri_content(text, *uri), *uri) : load_file(*uri);
-    if (bytes->empty()) uri->fail("the image is empty");
+    if (bytes->empty()) throw MissingFileError(uri->file(), uri->pointer(), "the image is empty");
     return bytes;
   }
 
@@ -249,8 +256,19 @@ GltfSource read_gltf_source(const std::filesystem::path& path) {
 
 std::vector<std::vector<unsigned char>> load_buffers(GltfSource& source, ImportShare& share) {
   std::vector<std::vector<unsigned char>> buffers;
-  for_each_object(JsonView(source.json, source.file), "buffers", [&](const JsonView& buffer, std::size_t index) {
-    buffers.push_back(load_buffer(source, buffer, index));
+  const JsonView root(source.json, source.file);
+  std::vector<bool> has_views(array_size(root, "buffers"));
+  for_each_object(root, "bufferViews", [&](const JsonView& view, std::size_t) {
+    has_views[reference(view.at("buffer"), has_views.size(), "buffer")] = true;
+  });
+  for_each_object(root, "buffers", [&](const JsonView& buffer, std::size_t index) {
+    try {
+      buffers.push_back(load_buffer(source, buffer, index));
+    } catch (const MissingFileError&) {
+      if (has_views[index]) throw;
+      tolerate(source.file, buffer.pointer() + "/uri", "no such file; no buffer view names it: ignored", source.warnings);
+      buffers.emplace_back();
+    }
     share.add(ImportShare(buffers.back().size(), source.file, buffer.pointer() + ": the buffer"));
   });
   return buffers;
@@ -262,12 +280,16 @@ std::vector<EncodedImage> load_images(const GltfSource& source, const std::vecto
   ImageLoader loader(source, buffers);
   for_each_object(JsonView(source.json, source.file), "images", [&](const JsonView& image, std::size_t i) {
     images.emplace_back();
+    const auto uri = member(image, "uri");
+    if (!uri && image.has("bufferView") && !image.has("mimeType"))
+      tolerate(source.file, image.pointer(), "\"mimeType\" is missing", warnings);
     try {
       images.back().bytes = loader.load(image);
-    } catch (const MissingFileError&) {
-      if (used[i]) throw;
-      const std::string where = image.pointer() + "/uri";
-      tolerate(source.file, where, "no such file: " + image.at("uri").text() + "; the scene does not use it: ignored", warnings);
+    } catch (const InputError& error) {
+      const bool is_just_useless =
+          dynamic_cast<const MissingFileError*>(&error) != nullptr || (uri && is_data_uri(uri->text()));
+      if (used[i] || !is_just_useless) throw;
+      tolerate(source.file, image.pointer() + "/uri", "there is no image; the scene does not use it: ignored", warnings);
     }
   });
   return images;

@@ -119,13 +119,15 @@ class Reach {
 
   void add_meshes() {
     const Json& meshes = gltf_array(gltf_, Section::meshes);
+    const Json& materials = gltf_array(gltf_, Section::materials);
     use_.primitives.resize(meshes.size());
     for (std::size_t m = 0; m < meshes.size(); ++m)
       for (const Json& primitive : array_in(meshes[m], "primitives")) {
-        auto& uv = use_.primitives[m].emplace_back().uv;
+        auto& [uv, is_lit] = use_.primitives[m].emplace_back();
         const auto add_material = [&](const Json& owner) {
           const std::size_t material = index_in(owner, "material", use_.materials.size());
-          if (material == SIZE_MAX) return;
+          if (material == SIZE_MAX) return void(is_lit = true);
+          is_lit = is_lit || !object_in(materials[material], "extensions").contains("KHR_materials_unlit");
           if (use_.meshes[m]) use_.materials[material] = true;
           for (std::size_t set = 0; set < uv.size(); ++set) uv[set] = uv[set] || uv_sets_[material][set];
         };

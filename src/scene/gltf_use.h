@@ -16,6 +16,7 @@ struct GltfUse {
   std::vector<bool> skinned_meshes;  // of a node with a skin
   struct Primitive {
     std::array<bool, 2> uv{};  // TEXCOORD_n is read by a texture of its materials
+    bool is_lit = false;       // by one of them
   };
   std::vector<std::vector<Primitive>> primitives;  // by mesh
 

@@ -18,9 +18,19 @@ class ValueCheck {
   ValueCheck(bool is_used, std::string_view file, std::vector<std::string>& warnings)
       : is_used_(is_used), file_(file), warnings_(warnings) {}
 
-  void object(const Schema& schema, Json& value, const std::string& pointer) {
+  /// Whether nothing had to be left out.
+  bool object(const Schema& schema, Json& value, const std::string& pointer) {
+    bool is_whole = true;
     for (const Field& field : schema.fields) {
       const auto found = value.find(field.key);
+      const bool must_be_there = field.required && field.kind == FieldKind::choice;
+      if (found == value.end() && must_be_there) {
+        const std::string fault = "\"" + std::string(field.key) + "\" is missing";
+        if (is_used_) throw InputError(file_, pointer, fault);
+        tolerate(file_, pointer, fault + "; the scene does not use it", warnings_);
+        value[std::string(field.key)] = field.choices.front();
+        is_whole = false;
+      }
       if (found == value.end()) continue;
       if (field.key == "extras") continue;  // relook's own, or anybody's: look_check reads what is relook's
       const std::string place = pointer + "/" + escape_token(field.key);
@@ -29,8 +39,10 @@ class ValueCheck {
       if (is_used_) throw InputError(file_, fault->place, fault->what);
       tolerate(file_, fault->place, fault->what + "; the scene does not use it: ignored", warnings_);
       value.erase(found);
-      if (field.required && field.kind == FieldKind::choice) value[std::string(field.key)] = field.choices.front();
+      if (must_be_there) value[std::string(field.key)] = field.choices.front();
+      is_whole = false;
     }
+    return is_whole;
   }
 
  private:
@@ -47,8 +59,7 @@ class ValueCheck {
       case FieldKind::number:
         return number(field, value, place);
       case FieldKind::integer:
-        if (!value.is_number_integer()) return wrong_type(place, "an integer", value);
-        return number(field, value, place);
+        return integer(field, value, place);
       case FieldKind::boolean:
         if (!value.is_boolean()) return wrong_type(place, "true or false", value);
         break;
@@ -61,12 +72,12 @@ class ValueCheck {
         return reals(field, value, place);
       case FieldKind::object:
         if (!value.is_object()) return wrong_type(place, "an object", value);
-        object(*field.inner, value, place);
+        (void)object(*field.inner, value, place);
         break;
       case FieldKind::list:
         if (!value.is_array()) return wrong_type(place, "an array", value);
         for (std::size_t i = 0; i < value.size(); ++i)
-          if (value[i].is_object()) object(*field.inner, value[i], place + "/" + std::to_string(i));
+          if (value[i].is_object()) (void)object(*field.inner, value[i], place + "/" + std::to_string(i));
         break;
       case FieldKind::texts:
       case FieldKind::name:
@@ -74,6 +85,18 @@ class ValueCheck {
         break;  // references: check_document()
     }
     return {};
+  }
+
+  /// 1.0 stands for 1 (glTF 2.0 section 3.1 wants no fraction).
+  std::optional<Fault> integer(const Field& field, Json& value, const std::string& place) {
+    constexpr double kMostExact = 1e9;
+    if (!value.is_number_integer()) {
+      const double x = value.is_number() ? value.get<double>() : 0.5;
+      if (std::floor(x) != x || !(std::abs(x) <= kMostExact)) return wrong_type(place, "an integer", value);
+      tolerate(file_, place, "an integer is written with a fraction", warnings_);
+      value = static_cast<std::int64_t>(x);
+    }
+    return number(field, value, place);
   }
 
   std::optional<Fault> number(const Field& field, Json& value, const std::string& place) {
@@ -151,7 +174,7 @@ void split_emission(Json& material, const std::string& pointer, std::string_view
 /// A cone whose inner angle is the outer one, or beyond it by rounding, has a hard edge.
 void fit_cone(Json& light, const std::string& pointer, bool is_used, std::string_view file,
               std::vector<std::string>& warnings) {
-  if (light.value("type", "") != "spot") return;
+  if (light.value("type", Json()) != "spot") return;
   if (!light.contains("spot")) return;
   Json& spot = light["spot"];
   const double inner = spot.value("innerConeAngle", 0.0), outer = spot.value("outerConeAngle", 0.7853981633974483);
@@ -161,6 +184,14 @@ void fit_cone(Json& light, const std::string& pointer, bool is_used, std::string
   if (inner > outer + kRounding && is_used) throw InputError(file, pointer + "/spot", what);
   tolerate(file, pointer + "/spot", what + ": the cone gets a hard edge", warnings);
   spot["innerConeAngle"] = outer;
+}
+
+/// The cone of a light that is none: KHR_lights_punctual reads it of spots alone.
+void check_idle_cone(Json& light, const std::string& pointer, std::string_view file,
+                     std::vector<std::string>& warnings) {
+  if (light.value("type", Json()) == "spot" || !light.contains("spot")) return;
+  Json cone = {{"type", "point"}, {"spot", light["spot"]}};
+  if (!ValueCheck(false, file, warnings).object(schema_of(Section::lights), cone, pointer)) light.erase("spot");
 }
 
 /// What no table says of a node's transform. Rounding errors of a matrix pass; its fourth row then is 0 0 0 1.
@@ -182,7 +213,7 @@ void check_transform(Json& node, const std::string& pointer, std::string_view fi
   if (rotation == node.end()) return;
   double squared = 0;
   for (const Json& part : *rotation) squared += part.get<double>() * part.get<double>();
-  if (!(squared >= 1e-12)) throw InputError(file, pointer + "/rotation", "the quaternion is zero");
+  if (!(squared > 1e-18)) throw InputError(file, pointer + "/rotation", "the quaternion is zero");
 }
 
 /// What no table says of a camera's lens.
@@ -207,11 +238,7 @@ std::string lens_fault(const Json& camera) {
 
 void check_camera(Json& camera, const std::string& pointer, bool is_used, std::string_view file,
                   std::vector<std::string>& warnings) {
-  if (!camera.is_object() || !camera.contains("type")) {
-    if (is_used) throw InputError(file, pointer, "\"type\" is missing");
-    return tolerate(file, pointer, "\"type\" is missing; the scene does not use it: ignored", warnings);
-  }
-  ValueCheck(is_used, file, warnings).object(camera_schema(), camera, pointer);
+  if (!ValueCheck(is_used, file, warnings).object(camera_schema(), camera, pointer)) return;
   const std::string fault = lens_fault(camera);
   if (fault.empty()) return;
   if (is_used) throw InputError(file, pointer, fault);
@@ -230,7 +257,8 @@ void check_section(Json& gltf, Section section, const GltfUse& use, std::string_
     const bool is_used = use.of(section)[i];
     if (section == Section::materials) split_emission(thing, pointer, file, warnings);
     const Schema& schema = section == Section::materials ? file_material_schema() : schema_of(section);
-    ValueCheck(is_used, file, warnings).object(schema, thing, pointer);
+    if (section == Section::lights) check_idle_cone(thing, pointer, file, warnings);
+    (void)ValueCheck(is_used, file, warnings).object(schema, thing, pointer);
     if (section == Section::nodes && is_used) check_transform(thing, pointer, file);
     if (section == Section::lights) fit_cone(thing, pointer, is_used, file, warnings);
   }

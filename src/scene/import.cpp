@@ -1,5 +1,8 @@
 #include "scene/import.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "scene/gltf_check.h"
 #include "scene/gltf_json.h"
 #include "scene/gltf_model.h"
@@ -113,7 +116,6 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   GltfSource source = read_gltf_source(path);
   ImportedGltf imported;
   imported.file = source.file;
-  imported.warnings = std::move(source.warnings);
   check_document(source.json, source.file, imported.warnings);
   check_roots(source.json, source.file, imported.warnings);
   const GltfUse use = gltf_use(source.json);
@@ -121,6 +123,7 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   imported.files = external_files(source);
   ImportShare share;  // of what is held until the import is done; then its result is counted
   auto buffers = load_buffers(source, share);
+  std::ranges::move(source.warnings, std::back_inserter(imported.warnings));
   imported.images = load_images(source, buffers, use.images, imported.warnings);
   resolve_texture_sources(source.json, imported.images, imported.warnings);
   drop_missing_images(imported.images, use, source.json);

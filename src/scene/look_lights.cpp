@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
+#include "scene/compile_material.h"
 #include "scene/look.h"
 #include "scene/look_bounds.h"
 #include "scene/look_names.h"
@@ -48,16 +50,49 @@ double distance_to(const std::array<Imath::V3d, 3>& corners, const Imath::V3d& a
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : none;
 }
 
-std::vector<Obstacle> obstacles(const LookDocument& document, const WidePoint& eye,
-                                const std::vector<Imath::V3d>& directions) {
-  std::vector<Obstacle> nearest(directions.size());
+/// Whether a surface of a mesh's primitive lets no light through.
+struct Wall {
+  bool is_opaque = true, is_double_sided = false;
+};
+Wall wall_of(const LookDocument& document, const std::string& node, const Mesh& mesh) {
+  const Json& name = document.look.at("nodes").at(node).at("mesh");
+  const Json* primitives = member_at(document.look, {"meshes", name.get_ref<const std::string&>(), "primitives"});
+  if (primitives == nullptr || mesh.primitive >= primitives->size()) return {};
+  const Json* of_primitive = member_at((*primitives)[mesh.primitive], {"material"});
+  if (of_primitive == nullptr) return {};
+  const Json& material = document.look.at("materials").at(of_primitive->get_ref<const std::string&>());
+  const auto is_zero = [&](std::initializer_list<std::string_view> keys) {
+    const Json* value = member_at(material, keys);
+    return value == nullptr || *value == 0;
+  };
+  const bool is_opaque = material.at("alphaMode") == "OPAQUE" &&
+                         is_zero({"extensions", "KHR_materials_transmission", "transmissionFactor"}) &&
+                         is_zero({"extras", "relook", "transparency"}) && is_zero({"extras", "relook", "refraction"});
+  return {is_opaque, material.at("doubleSided").get<bool>()};
+}
+
+/// A way from the eye, and whether light comes along it (what is single-sided then stops it where its front faces the
+/// light) or a ray of the camera goes along it.
+struct Way {
+  Imath::V3d along;
+  bool is_of_light;
+};
+
+std::vector<Obstacle> obstacles(const LookDocument& document, const WidePoint& eye, const std::vector<Way>& ways) {
+  std::vector<Obstacle> nearest(ways.size());
   for_each_placed_mesh(document, [&](const std::string& node, const Mesh& mesh, const WideTransform& world) {
+    const Wall wall = wall_of(document, node, mesh);
+    if (!wall.is_opaque) return;
+    const bool is_mirrored = world.determinant() < 0;
     for (const auto& triangle : mesh.triangles) {
       std::array<Imath::V3d, 3> corners;
       for (std::size_t i = 0; i < 3; ++i) corners[i] = Imath::V3d(mesh.positions[triangle[i]]) * world - eye;
-      for (std::size_t i = 0; i < directions.size(); ++i)
-        if (const double distance = distance_to(corners, directions[i]); distance < nearest[i].distance)
+      const Imath::V3d front = (corners[1] - corners[0]).cross(corners[2] - corners[0]) * (is_mirrored ? -1.0 : 1.0);
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (!wall.is_double_sided && (front.dot(ways[i].along) > 0) != ways[i].is_of_light) continue;
+        if (const double distance = distance_to(corners, ways[i].along); distance < nearest[i].distance)
           nearest[i] = {distance, node};
+      }
     }
   });
   return nearest;
@@ -83,24 +118,27 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera) {
   const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, {1.0, 0.97, 0.92}},
                               {"fill", 0.9, 0.3, 0.6, 0.22, {0.92, 0.96, 1.0}},
                               {"rim", 0.3, 0.7, -0.9, 0.4, {1.0, 1.0, 1.0}}};
-  std::vector<Imath::V3d> directions;
+  std::vector<Way> ways;
   for (const AutoLight& light : lights)
-    directions.push_back((Imath::V3d(camera.right) * light.right + Imath::V3d(camera.up) * light.up -
-                          Imath::V3d(camera.forward) * light.back)
-                             .normalized());
-  directions.emplace_back(camera.forward);
+    ways.push_back({(Imath::V3d(camera.right) * light.right + Imath::V3d(camera.up) * light.up -
+                     Imath::V3d(camera.forward) * light.back)
+                        .normalized(),
+                    true});
+  ways.push_back({Imath::V3d(camera.forward), false});
   const bool is_inside = world_bounds(document).intersects(camera.eye);
-  const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, directions) : std::vector<Obstacle>();
+  const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, ways) : std::vector<Obstacle>();
   for (std::size_t i = 0; i < std::size(lights); ++i)  // a diffuse surface reflects 1 / pi of the illuminance
     add_light(document, lights[i].name,
               {{"type", "directional"},
                {"color", lights[i].color},
                {"intensity", lights[i].white_diffuse * std::numbers::pi}},
-              {{"rotation", rotation_to(-directions[i])}});
-  const bool is_closed =
-      is_inside && std::ranges::all_of(met, [](const Obstacle& obstacle) { return std::isfinite(obstacle.distance); });
+              {{"rotation", rotation_to(-ways[i].along)}});
+  const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)), [](const Obstacle& o) {
+                           return std::isfinite(o.distance);
+                         });
   if (!is_closed) return "";
-  const double distance = std::clamp(met.back().distance, 1e-4, 1e4);
+  const double extent = world_bounds(document).size().length() / 2;
+  const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
   add_light(document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
             {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}});
   return "the camera stands in a room closed by node \"" + met.front().node +

@@ -1,5 +1,6 @@
 #include "scene/look_warnings.h"
 
+#include <map>
 #include <set>
 
 #include "scene/compile_material.h"
@@ -31,11 +32,22 @@ class Kind {
 
 void warn_of_places(const LookDocument& document, std::vector<std::string>& warnings) {
   Kind objects(warnings), lights(warnings);
-  std::set<std::string> said;
+  struct Count {
+    std::size_t all = 0, lost = 0;
+  };
+  std::map<std::string, Count> counts;  // of primitives and instances, by node
   for_each_placed_mesh(document, [&](const std::string& node, const Mesh&, const WideTransform& world) {
-    if (!is_in_range(world) || dimensions_of(rounded(world, WidePoint(0, 0, 0))) >= 2) return;
-    if (said.insert(node).second) objects.add("node \"" + node + "\" is scaled to nothing: its mesh is not drawn");
+    Count& count = counts[node];
+    ++count.all;
+    if (is_in_range(world) && dimensions_of(rounded(world, WidePoint(0, 0, 0))) < 2) ++count.lost;
   });
+  for (const auto& [node, count] : counts) {
+    if (count.lost == 0) continue;
+    const std::string what = count.lost == count.all ? "its mesh is not drawn"
+                                                     : std::to_string(count.lost) + " of its " +
+                                                           std::to_string(count.all) + " instances are not drawn";
+    objects.add("node \"" + node + "\" is scaled to nothing: " + what);
+  }
   for_each_place(document, [&](const std::string& name, const Json& node, const WideTransform& world) {
     const Json* light = member_at(node, {"extensions", "KHR_lights_punctual", "light"});
     if (light == nullptr) return;
@@ -52,17 +64,34 @@ void visit_textures(const Schema& schema, const Json& value, const std::function
   });
 }
 
+/// Of everything that a node shows, also in a variant.
+std::set<std::string> shown_materials(const LookDocument& document) {
+  std::set<std::string> shown;
+  for (const Json& node : document.look.at("nodes")) {
+    const Json* mesh = member_at(node, {"mesh"});
+    if (mesh == nullptr) continue;
+    visit_names(schema_of(Section::meshes), document.look.at("meshes").at(mesh->get<std::string>()),
+                [&](Target target, const Json& name) {
+                  if (target == Target::materials && name.is_string()) shown.insert(name.get<std::string>());
+                });
+  }
+  return shown;
+}
+
 void warn_of_textures(const LookDocument& document, std::vector<std::string>& warnings) {
   Kind kind(warnings);
   const Json& textures = document.look.at("textures");
-  for (const auto& material : document.look.at("materials").items())
-    visit_textures(schema_of(Section::materials), material.value(), [&](const std::string& name) {
+  for (const std::string& material : shown_materials(document)) {
+    const auto entry = document.look.at("materials").find(material);
+    if (entry == document.look.at("materials").end()) continue;
+    visit_textures(schema_of(Section::materials), *entry, [&](const std::string& name) {
       const auto texture = textures.find(name);
       if (texture == textures.end() || texture->contains("source")) return;
       if (member_at(*texture, {"extras", "relook", "procedural"}) != nullptr) return;
-      kind.add("texture \"" + name + "\" has no image that is read: material \"" + material.key() +
+      kind.add("texture \"" + name + "\" has no image that is read: material \"" + material +
                "\" is drawn without it");
     });
+  }
 }
 
 }  // namespace
