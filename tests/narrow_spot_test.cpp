@@ -2,6 +2,7 @@
 // derived in double.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
