@@ -35,7 +35,7 @@ std::size_t pixels_that_differ(const Frame& a, const Frame& b, int channel) {
 }
 
 TEST(Dispersion, each_channel_is_that_of_its_own_index) {
-  constexpr float kIndex = 1.5F, kStrength = 12;
+  constexpr float kIndex = 1.7F, kStrength = 5;
   const ViewOptions view{1, 3, 0};  // so few generations that the Fresnel cut-off takes nothing
   for (const bool from_inside : {false, true}) {
     SCOPED_TRACE(from_inside ? "from inside" : "from outside");
