@@ -215,8 +215,6 @@ constexpr std::array kReasons = {
     Reason{"UNDECLARED_EXTENSION", "", "extensions that relook does not know are ignored, declared or not"},
     Reason{"VALUE_NOT_IN_RANGE", "/extensions/KHR_materials_anisotropy",
            "extensions that relook does not know are ignored"},
-    Reason{"VALUE_NOT_IN_RANGE", "/extensions/KHR_materials_dispersion",
-           "extensions that relook does not know are ignored"},
     Reason{"MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", "", "a mesh without that uv set is mapped by position instead"},
     Reason{"MESH_PRIMITIVE_NO_TANGENT_SPACE", "", "tangents are derived from uv, or from the normal without uv"},
     Reason{"UNDEFINED_PROPERTY", "/extensions/KHR_lights_punctual",
