@@ -360,7 +360,7 @@ TEST_F(CacheFolder, the_version_says_what_bits_depend_on) {
   const Arithmetic& own = own_arithmetic();
   const std::string version = relook({"--version"}).output;
   EXPECT_TRUE(version.starts_with("relook 0.1.0\narithmetic " + std::to_string(own.version) + ", Embree " + own.embree +
-                                  ", " + own.libc + ", " + own.instructions + "\ncache format 4\n"))
+                                  ", " + own.libc + ", " + own.instructions + "\ncache format 5\n"))
       << version;
   EXPECT_NE(own.embree, "none");
 }

@@ -17,7 +17,7 @@
 namespace relook {
 
 /// Layout of a cache directory; a change of any byte's meaning raises it.
-inline constexpr std::uint32_t kCacheFormat = 4;
+inline constexpr std::uint32_t kCacheFormat = 5;
 inline constexpr std::string_view kContainerMagic = "RLKCACHE";  // how every .rlk file begins
 
 /// Which cache a file belongs to: XXH3-128 in hexadecimal of the scene and of the options.
