@@ -241,6 +241,16 @@ TEST_F(ImportValues, columns_that_nothing_reads_may_hold_anything) {
          file.primitive()["attributes"]["NORMAL"] = file.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
          file.primitive()["attributes"]["TANGENT"] = file.floats(std::vector<float>(16, bad), "VEC4", 4);
        }},
+      {"tangents of three numbers", true,
+       [&](SceneFile& file) {
+         file.primitive()["attributes"]["NORMAL"] = file.floats({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+         file.primitive()["attributes"]["TANGENT"] = file.floats(std::vector<float>(12, 1), "VEC3", 3);
+       }},
+      {"normals of an unlit material", true,
+       [&](SceneFile& file) {
+         file.gltf["materials"][0]["extensions"] = {{"KHR_materials_unlit", Json::object()}};
+         file.primitive()["attributes"]["NORMAL"] = file.floats({0, 0, 1, 0, bad, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
+       }},
       {"normals", false,
        [&](SceneFile& file) {
          file.primitive()["attributes"]["NORMAL"] = file.floats({0, 0, 1, 0, bad, 1, 0, 0, 1, 0, 0, 1}, "VEC3", 3);
@@ -343,6 +353,37 @@ TEST_F(ImportValues, roots_open_folders_and_what_links_lead_to_within_them) {
   }
 }
 
+TEST_F(ImportValues, what_has_one_plain_meaning_is_read_with_a_warning) {
+  const std::pair<const char*, std::function<void(Json&)>> cases[] = {
+      {"the cone of a light that is no spot",
+       [](Json& gltf) {
+         Json& light = gltf["extensions"]["KHR_lights_punctual"]["lights"][0];
+         light = {{"type", "directional"}, {"spot", {{"innerConeAngle", 3}}}};
+       }},
+      {"an unused light without a type",
+       [](Json& gltf) { gltf["extensions"]["KHR_lights_punctual"]["lights"].push_back(Json::object()); }},
+      {"an integer with a fraction",
+       [](Json& gltf) { gltf["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 0.0; }},
+      {"a buffer that no view names",
+       [](Json& gltf) { gltf["buffers"].push_back({{"byteLength", 9}, {"uri", "none.bin"}}); }},
+      {"an unused image in bad base64",
+       [](Json& gltf) { gltf["images"] = {{{"uri", "data:image/png;base64,*"}}}; }},
+      {"an image whose type is not said",
+       [](Json& gltf) { gltf["images"] = {{{"bufferView", 0}}}; }},
+      {"an unused camera without a lens", [](Json& gltf) { gltf["cameras"].push_back({{"type", "perspective"}}); }},
+  };
+  for (const auto& [name, change] : cases) {
+    Json gltf = text_scene();
+    change(gltf);
+    const Answer read = answer(gltf.dump(), "inner/scene.gltf");
+    EXPECT_EQ(read.error, "") << name;
+    EXPECT_EQ(read.imported.warnings.size(), 1U) << name;
+    set_import_rules({.is_strict = true, .roots = {}});
+    EXPECT_NE(answer(gltf.dump(), "inner/scene.gltf").error, "") << name << " --strict-gltf";
+    set_import_rules({});
+  }
+}
+
 TEST_F(ImportValues, framing_of_files_is_read_as_it_is_meant) {
   const SceneFile file = square();
   EXPECT_EQ(answer(file.glb() + std::string(9, 'x')).imported.warnings.size(), 1U);
@@ -354,7 +395,7 @@ TEST_F(ImportValues, framing_of_files_is_read_as_it_is_meant) {
   EXPECT_EQ(answer(outside.glb()).error, "") << "a .glb may name files";
   gltf = {{"asset", {{"version", "2.0"}}}};
   for (const char* uri : {"data:application/octet-stream;base64,AQIDBA==", "data:application/octet-stream;BASE64,AQIDBA==",
-                          "DATA:;Base64,AQIDBA"}) {
+                          "DATA:;Base64,AQIDBA", "data:;base64,AQID%42A%3D%3D", "data:;base64,AQ\n ID\r\nBA=="}) {
     gltf["buffers"] = {{{"byteLength", 4}, {"uri", uri}}};
     EXPECT_EQ(answer(gltf.dump(), "inner/scene.gltf").error, "") << uri;
   }

@@ -189,5 +189,22 @@ TEST(Look, automatic_key_light_shines_away_from_the_camera) {
     }
 }
 
+TEST(Look, only_what_stands_in_the_world_must_be_near_enough) {
+  LookDocument document = make_look_document(small_gltf());
+  const Camera camera = choose_camera(document, "auto", 8, 8);
+  Json far{{"translation", {3e38, 0, 0}}};
+  fill_defaults(Section::nodes, far);
+  document.look["nodes"]["Empty"] = far;
+  Json wide{{"scale", {1e13, 1e13, 1e13}}, {"children", {"Small"}}}, small{{"scale", {1e-13, 1e-13, 1e-13}}, {"mesh", "Ball"}};
+  fill_defaults(Section::nodes, wide);
+  fill_defaults(Section::nodes, small);
+  document.look["nodes"]["Wide"] = wide;
+  document.look["nodes"]["Small"] = small;
+  EXPECT_EQ(message_of([&] { (void)SceneState(document, camera, small_pyramids()); }), "");
+  document.look["nodes"]["Empty"]["mesh"] = "Ball";
+  EXPECT_NE(message_of([&] { (void)SceneState(document, camera, small_pyramids()); }).find("/nodes/Empty: the node's place"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace relook
