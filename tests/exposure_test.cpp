@@ -108,7 +108,7 @@ TEST_F(ExposedRun, is_a_number_of_stops) {
 TEST_F(ExposedRun, pages_show_it) {
   ASSERT_EQ(replay("plain", {}).exit_code, 0);
   ASSERT_EQ(replay("bright", {"--exposure", "4", "--overlays"}).exit_code, 0);
-  const std::string page = text_of(read_file(at("bright/report.html")));
+  const std::string page(text_of(read_file(at("bright/report.html"))));
   EXPECT_NE(page.find("\"exposure\":4"), std::string::npos);
   const auto compared = [&](const std::string& name, const std::vector<std::string>& further) {
     std::vector<std::string> words{"compare", at("plain/frames/0000.exr"), at("plain/frames/0001.exr"), "--html",

@@ -1,5 +1,7 @@
 #include "tree_reader.h"
 
+#include "trace/path_cursor.h"
+
 namespace relook {
 namespace {
 
