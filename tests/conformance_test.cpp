@@ -81,14 +81,18 @@ TEST_F(Conformance, negative_scale) {
 TEST_F(Conformance, texture_settings) {
   render("khronos-small/TextureSettingsTest/glTF-Binary/TextureSettingsTest.glb", "0,0,15:0,0,0:45", 640, 640);
   EXPECT_EQ(red_pixels(), 0U) << "a red cross";
-  for (const int y : {189, 242, 296, 349, 403, 456, 509, 562}) expect_alike({343, y}, {454, y}, 18, 0.03F);
+  for (const int y : {189, 242, 296, 349, 403, 456, 509, 562}) expect_alike({343, y}, {454, y}, 18, 0.05F);
 }
 
 TEST_F(Conformance, texture_transforms_of_every_slot_and_both_sets) {
-  render("texture-transform-multi-test/TextureTransformMultiTest.glb", "0,-0.25,3:0,-0.25,0:50", 480, 480);
+  const char* const file = "texture-transform-multi-test/TextureTransformMultiTest.glb";
+  render(file, "0,-0.25,3:0,-0.25,0:50", 480, 480);
   EXPECT_EQ(red_pixels(), 0U) << "a crossed-out circle";
-  for (const int y : {69, 111, 154, 197, 240, 283, 328, 370, 412})
-    for (const int x : {257, 300}) expect_alike({x, y}, {343, y}, 12, 0.05F);
+  for (const int y : {69, 111, 197, 240, 283, 328, 370, 412})
+    for (const int x : {257, 300}) expect_alike({x, y}, {343, y}, 12, 0.07F);
+  // Normals from nearer: the three maps have their levels at other distances.
+  render(file, "0.2,0.22,0.75:0.2,0.22,0:50", 900, 500);
+  for (const int x : {378, 557}) expect_alike({x, 228}, {735, 228}, 60, 0.05F);
 }
 
 TEST_F(Conformance, morphed_primitives) {
@@ -107,7 +111,7 @@ TEST_F(Conformance, a_morph_of_sparse_targets_at_rest) {
   render("khronos-small/SimpleMorph/glTF/SimpleMorph.gltf", "0.5,1,5:0.5,1,0:40", 480, 480);
   EXPECT_EQ(at({240, 200}).a, 1);
   EXPECT_EQ(at({240, 170}).a, 0);
-  EXPECT_EQ(at({170, 360}).a, 1);
+  EXPECT_EQ(at({185, 365}).a, 1);
   EXPECT_EQ(at({170, 250}).a, 0);
 }
 
@@ -118,7 +122,7 @@ TEST_F(Conformance, skins_in_their_bind_poses) {
   for (const Pixel outside : {Pixel{215, 60}, Pixel{265, 60}, Pixel{150, 180}, Pixel{330, 180}})
     EXPECT_EQ(at(outside).a, 0) << outside.x << "," << outside.y;
   EXPECT_GT(at({230, 180}).g, at({230, 180}).r) << "green";
-  render("recursive-skeletons/RecursiveSkeletons.glb", "auto", 640, 640);
+  render("recursive-skeletons/RecursiveSkeletons.glb", "auto", 480, 480);
   for (const Pixel column : {Pixel{130, 280}, Pixel{220, 240}, Pixel{258, 330}, Pixel{340, 280}})
     EXPECT_EQ(at(column).a, 1) << column.x << "," << column.y;
   for (const Pixel between : {Pixel{180, 280}, Pixel{300, 280}, Pixel{420, 280}})

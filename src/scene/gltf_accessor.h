@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "scene/gltf_model.h"
@@ -22,6 +23,7 @@ namespace relook {
 /// A SCALAR accessor of an unsigned type.
 [[nodiscard]] std::vector<std::uint32_t> read_indices(const GltfModel& model, const GltfAccessor& accessor);
 
+inline constexpr std::string_view kNoData = "the accessor's buffer has no data";
 /// Empty, or why the accessor cannot be read: its buffer is a placeholder, or its sparse indices do not increase or
 /// reach count. Must be empty before the functions above are called.
 [[nodiscard]] std::string_view data_fault(const GltfModel& model, const GltfAccessor& accessor);

@@ -8,6 +8,7 @@
 #include "scene/gltf_accessor.h"
 #include "scene/gltf_json.h"
 #include "scene/gltf_unpack.h"
+#include "scene/import_rules.h"
 #include "scene/mesh_library.h"
 
 namespace relook {
@@ -20,6 +21,7 @@ struct DracoUse {
   JsonView place;   // of the primitive
   JsonView packed;  // of its extension
   GltfPrimitive* primitive;
+  std::size_t mesh;
   std::map<std::string, std::uint32_t> attributes;  // that the primitive has, too, and relook may read
   std::size_t indices;                              // accessor
 };
@@ -29,11 +31,12 @@ bool is_readable(const std::string& name, const GltfAccessor& accessor) {
   return !name.starts_with('_') && accessor.width >= 1 && accessor.width <= 4;
 }
 
-DracoUse use_of(const JsonView& place, const JsonView& packed, const GltfModel& model, GltfPrimitive& primitive) {
+DracoUse use_of(const JsonView& place, const JsonView& packed, const GltfModel& model, std::size_t mesh,
+                GltfPrimitive& primitive) {
   const auto indices = optional_reference(place, "indices", model.accessors.size(), "accessor");
   if (!indices) place.fail("Draco data needs an accessor of indices");
   if (primitive.mode > 5) place.at("mode").fail("Draco data holds triangles and strips alone");
-  DracoUse use{place, packed, &primitive, {}, *indices};
+  DracoUse use{place, packed, &primitive, mesh, {}, *indices};
   const JsonView attributes = packed.at("attributes");
   for (const auto& [name, id] : attributes.value().items())
     if (const auto found = primitive.attributes.find(name); found != primitive.attributes.end())
@@ -50,7 +53,7 @@ std::map<std::size_t, std::vector<DracoUse>> uses_of(const JsonView& root, GltfM
       const auto packed = draco_extension(place);
       if (!packed || primitive.mode < 4) return;
       const std::size_t view = reference(packed->at("bufferView"), model.views.size(), "buffer view");
-      uses[view].push_back(use_of(place, *packed, model, primitive));
+      uses[view].push_back(use_of(place, *packed, model, m, primitive));
     });
   });
   return uses;
@@ -97,6 +100,9 @@ class DracoSource {
       std::size_t& accessor = use.primitive->attributes.at(name);
       accessor = column(id, model_.accessors[accessor], place);
     }
+    for (const auto& [name, accessor] : use.primitive->attributes)
+      if (model_.accessors[accessor].view == kNoIndex && model_.accessors[accessor].sparse_count == 0)
+        use.place.at("attributes").at(name).fail("neither the Draco data nor a buffer view gives this attribute");
     for (const auto& [name, accessor] : use.primitive->attributes)
       if (is_readable(name, model_.accessors[accessor]) && model_.accessors[accessor].count != mesh_.points())
         use.place.at("attributes")
@@ -215,8 +221,20 @@ void unpack(std::size_t view, const std::vector<DracoUse>& uses, GltfModel& mode
 
 std::optional<JsonView> draco_extension(const JsonView& primitive) { return extension(primitive, kExtension); }
 
-void unpack_draco(const JsonView& root, GltfModel& model, std::vector<std::string>& warnings, ImportShare& share) {
-  for (const auto& [view, uses] : uses_of(root, model)) unpack(view, uses, model, warnings, share);
+void unpack_draco(const JsonView& root, GltfModel& model, const GltfUse& use, std::vector<std::string>& warnings,
+                  ImportShare& share) {
+  for (const auto& [view, uses] : uses_of(root, model)) {
+    const bool is_needed = std::ranges::any_of(uses, [&](const DracoUse& one) { return use.meshes[one.mesh]; });
+    try {
+      unpack(view, uses, model, warnings, share);
+    } catch (const InputError&) {
+      if (is_needed) throw;
+      const JsonView& place = uses.front().packed;
+      tolerate(place.file(), place.pointer(), "the Draco data cannot be read; the scene does not use it: ignored",
+               warnings);
+      for (const DracoUse& one : uses) one.primitive->attributes.erase("POSITION");
+    }
+  }
 }
 
 }  // namespace relook

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "scene/gltf_json.h"
 #include "scene/gltf_unpack.h"
+#include "scene/import_rules.h"
 #include "scene/mesh_library.h"
 
 namespace relook {
@@ -121,12 +122,12 @@ void unpack_view(const JsonView& place, std::size_t number, GltfModel& model, st
 }
 
 /// A reference that is wrong is for whoever reads it to say.
-void add_named(const JsonView& owner, std::string_view key, const GltfModel& model,
-               std::vector<std::size_t>& accessors) {
+void add_named(const JsonView& owner, std::string_view key, bool is_needed, const GltfModel& model,
+               std::vector<ReadAccessor>& accessors) {
   if (!owner.has(key)) return;
   const Json& index = owner.at(key).value();
   if (index.is_number_unsigned() && index.get<std::uint64_t>() < model.accessors.size())
-    accessors.push_back(index.get<std::size_t>());
+    accessors.push_back({index.get<std::size_t>(), is_needed});
 }
 
 }  // namespace
@@ -137,52 +138,67 @@ std::optional<JsonView> meshopt_extension(const JsonView& view) {
   return std::nullopt;
 }
 
-void unpack_meshopt(const JsonView& root, GltfModel& model, const std::vector<std::size_t>& accessors,
+void unpack_meshopt(const JsonView& root, GltfModel& model, const std::vector<ReadAccessor>& accessors,
                     std::vector<std::string>& warnings, ImportShare& share) {
-  std::vector<bool> is_read(array_size(root, "bufferViews"), false);
-  const auto mark = [&](std::size_t view) {
-    if (view < is_read.size()) is_read[view] = true;
-  };
-  for (const std::size_t index : accessors) {
-    const GltfAccessor& accessor = model.accessors[index];
+  std::vector<bool> is_read(array_size(root, "bufferViews"), false), is_needed(is_read.size(), false);
+  for (const ReadAccessor& read : accessors) {
+    const GltfAccessor& accessor = model.accessors[read.index];
+    const auto mark = [&](std::size_t view) {
+      if (view >= is_read.size()) return;
+      is_read[view] = true;
+      if (read.is_needed) is_needed[view] = true;
+    };
     mark(accessor.view);
     if (accessor.sparse_count > 0) mark(accessor.sparse_index_view), mark(accessor.sparse_value_view);
   }
-  for (std::size_t i = 0; i < is_read.size(); ++i)
-    if (is_read[i])
-      if (const auto place = meshopt_extension(root.at("bufferViews").at(i)))
-        unpack_view(*place, i, model, warnings, share);
+  for (std::size_t i = 0; i < is_read.size(); ++i) {
+    if (!is_read[i]) continue;
+    const auto place = meshopt_extension(root.at("bufferViews").at(i));
+    if (!place) continue;
+    try {
+      unpack_view(*place, i, model, warnings, share);
+    } catch (const InputError&) {
+      if (is_needed[i]) throw;
+      tolerate(place->file(), place->pointer(), "the data cannot be read; the scene does not use it: ignored", warnings);
+      model.views[i].buffer = model.buffers.size();
+      model.buffers.emplace_back();
+    }
+  }
 }
 
-std::vector<std::size_t> accessors_of_scene(const JsonView& root, const GltfModel& model) {
-  std::vector<std::size_t> accessors;
-  const auto add_all = [&](const GltfAttributes& attributes) {
-    for (const auto& [name, accessor] : attributes) accessors.push_back(accessor);
-  };
-  for (const auto& primitives : model.meshes)
-    for (const GltfPrimitive& primitive : primitives) {
+std::vector<ReadAccessor> accessors_of_scene(const JsonView& root, const GltfModel& model, const GltfUse& use) {
+  std::vector<ReadAccessor> accessors;
+  for (std::size_t m = 0; m < model.meshes.size(); ++m)
+    for (std::size_t p = 0; p < model.meshes[m].size(); ++p) {
+      const GltfPrimitive& primitive = model.meshes[m][p];
       if (primitive.mode < 4) continue;
+      const auto add_all = [&](const GltfAttributes& attributes) {
+        for (const auto& [name, accessor] : attributes)
+          if (!name.starts_with('_')) accessors.push_back({accessor, use.reads(m, p, name)});
+      };
       add_all(primitive.attributes);
       for (const GltfAttributes& target : primitive.targets) add_all(target);
-      if (primitive.indices != kNoIndex) accessors.push_back(primitive.indices);
+      if (primitive.indices != kNoIndex) accessors.push_back({primitive.indices, use.meshes[m]});
     }
-  for_each_object(root, "skins",
-                  [&](const JsonView& skin, std::size_t) { add_named(skin, "inverseBindMatrices", model, accessors); });
-  for_each_object(root, "nodes", [&](const JsonView& node, std::size_t) {
+  for_each_object(root, "skins", [&](const JsonView& skin, std::size_t i) {
+    add_named(skin, "inverseBindMatrices", use.skins[i], model, accessors);
+  });
+  for_each_object(root, "nodes", [&](const JsonView& node, std::size_t i) {
     const auto instances = extension(node, "EXT_mesh_gpu_instancing");
     if (!instances || !instances->has("attributes") || !instances->at("attributes").value().is_object()) return;
     const JsonView attributes = instances->at("attributes");
-    for (const auto& [name, index] : attributes.value().items()) add_named(attributes, name, model, accessors);
+    for (const auto& [name, index] : attributes.value().items())
+      add_named(attributes, name, use.nodes[i], model, accessors);
   });
   return accessors;
 }
 
-std::vector<std::size_t> accessors_of_animations(const JsonView& root, const GltfModel& model) {
-  std::vector<std::size_t> accessors;
+std::vector<ReadAccessor> accessors_of_animations(const JsonView& root, const GltfModel& model) {
+  std::vector<ReadAccessor> accessors;
   for_each_object(root, "animations", [&](const JsonView& animation, std::size_t) {
     for_each_object(animation, "samplers", [&](const JsonView& sampler, std::size_t) {
-      add_named(sampler, "input", model, accessors);
-      add_named(sampler, "output", model, accessors);
+      add_named(sampler, "input", true, model, accessors);
+      add_named(sampler, "output", true, model, accessors);
     });
   });
   return accessors;

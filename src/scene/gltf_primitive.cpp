@@ -47,7 +47,11 @@ std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& 
     source.forgive(place, std::string(kFault) + ": the column is ignored");
     return {};
   }
-  if (const auto fault = data_fault(source.model, accessor); !fault.empty()) source.fail(place, fault);
+  if (const auto fault = data_fault(source.model, accessor); !fault.empty()) {
+    if (is_read || fault != kNoData) source.fail(place, fault);
+    source.forgive(place, std::string(fault) + ": the column is ignored");
+    return {};
+  }
   std::vector<float> values = read_floats(source.model, accessor, source.vertices);
   const auto bad = std::ranges::find_if(values, [&](float value) { return !(std::abs(value) <= largest); });
   if (bad == values.end()) return values;

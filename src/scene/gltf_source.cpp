@@ -289,7 +289,7 @@ std::vector<EncodedImage> load_images(const GltfSource& source, const std::vecto
       const bool is_just_useless =
           dynamic_cast<const MissingFileError*>(&error) != nullptr || (uri && is_data_uri(uri->text()));
       if (used[i] || !is_just_useless) throw;
-      tolerate(source.file, image.pointer() + "/uri", "there is no image; the scene does not use it: ignored", warnings);
+      tolerate(source.file, image.pointer() + "/uri", "there is no image; the scene can do without: ignored", warnings);
     }
   });
   return images;

@@ -69,6 +69,7 @@ class Converter {
     Json& extensions = material["extensions"];
     const Json old = std::move(extensions[kExtension]);
     extensions.erase(kExtension);
+    if (extensions.contains("KHR_materials_unlit")) return;  // its base colour is the file's own
     Json specular = {{"specularFactor", 1.0}, {"specularColorFactor", old.value("specularFactor", Json({1, 1, 1}))}};
     Json surface = {{"baseColorFactor", old.value("diffuseFactor", Json({1, 1, 1, 1}))}, {"metallicFactor", 0.0}};
     if (old.contains("diffuseTexture")) surface["baseColorTexture"] = old["diffuseTexture"];

@@ -1,5 +1,7 @@
 #include "scene/gltf_textures.h"
 
+#include "base/error.h"
+#include "scene/image.h"
 #include "scene/image_stream.h"
 
 namespace relook {
@@ -13,6 +15,18 @@ Json source_of(const Json& texture, std::string_view name) {
   return found == extensions->end() ? Json(nullptr) : found->value("source", Json(nullptr));
 }
 
+/// Why a texture's other image is better; "" if the image can be read, as far as its header tells.
+std::string webp_fault(const EncodedImage& image) {
+  if (!image.bytes) return "is not there";
+  if (is_animated_webp(*image.bytes)) return "is an animated WebP image";
+  try {
+    (void)read_image_header(*image.bytes, "", "");
+  } catch (const InputError&) {
+    return "cannot be read";
+  }
+  return "";
+}
+
 }  // namespace
 
 void resolve_texture_sources(Json& gltf, const std::vector<EncodedImage>& images, std::vector<std::string>& warnings) {
@@ -24,10 +38,10 @@ void resolve_texture_sources(Json& gltf, const std::vector<EncodedImage>& images
     const Json webp = source_of(texture, "EXT_texture_webp"), ktx = source_of(texture, "KHR_texture_basisu");
     bool has_source = texture.contains("source");
     if (!webp.is_null()) {
-      const auto& bytes = images[webp.get<std::size_t>()].bytes;
-      if (has_source && bytes && is_animated_webp(*bytes)) {
+      const std::string fault = webp_fault(images[webp.get<std::size_t>()]);
+      if (has_source && !fault.empty()) {
         warnings.push_back("/textures/" + std::to_string(i) + ": image " + std::to_string(webp.get<std::size_t>()) +
-                           " is an animated WebP image: the texture's other image is read");
+                           " " + fault + ": the texture's other image is read");
       } else {
         texture["source"] = webp;
         has_source = true;

@@ -10,6 +10,7 @@
 
 #include "base/json.h"
 #include "scene/gltf_model.h"
+#include "scene/gltf_use.h"
 
 namespace relook {
 
@@ -19,17 +20,27 @@ namespace relook {
 [[nodiscard]] std::optional<JsonView> draco_extension(const JsonView& primitive);
 
 /// Of a checked model: the primitives that Draco data makes triangles of get its attributes and indices. Data that
-/// several primitives name is decoded once. Throws InputError{file, pointer, ...}, ResourceError.
-void unpack_draco(const JsonView& root, GltfModel& model, std::vector<std::string>& warnings, ImportShare& share);
+/// several primitives name is decoded once. Throws InputError{file, pointer, ...}, ResourceError; not InputError for
+/// data of meshes that the scene does not show: they lose their positions then, with a warning.
+void unpack_draco(const JsonView& root, GltfModel& model, const GltfUse& use, std::vector<std::string>& warnings,
+                  ImportShare& share);
 
-/// The views that the accessors named in `accessors` read; others stay as they are. Errors as above.
-void unpack_meshopt(const JsonView& root, GltfModel& model, const std::vector<std::size_t>& accessors,
+/// An accessor that is read, and whether the scene shows what it is for.
+struct ReadAccessor {
+  std::size_t index;
+  bool is_needed;
+};
+
+/// The views that these accessors read; others stay as they are, and so do, without data and with a warning, those
+/// that cannot be read and are not needed. Errors as above.
+void unpack_meshopt(const JsonView& root, GltfModel& model, const std::vector<ReadAccessor>& accessors,
                     std::vector<std::string>& warnings, ImportShare& share);
 
 /// Accessors that meshes, skins and instances read. Requires: draco is unpacked.
-[[nodiscard]] std::vector<std::size_t> accessors_of_scene(const JsonView& root, const GltfModel& model);
+[[nodiscard]] std::vector<ReadAccessor> accessors_of_scene(const JsonView& root, const GltfModel& model,
+                                                           const GltfUse& use);
 /// Accessors that animations read.
-[[nodiscard]] std::vector<std::size_t> accessors_of_animations(const JsonView& root, const GltfModel& model);
+[[nodiscard]] std::vector<ReadAccessor> accessors_of_animations(const JsonView& root, const GltfModel& model);
 
 /// How a user gets a file without the extensions.
 inline constexpr std::string_view kUnpackCommand = "`gltf-transform copy IN.glb OUT.glb` writes the file uncompressed";

@@ -110,7 +110,7 @@ class Reach {
     use_.nodes[index] = true;
     const Json& node = gltf_["nodes"][index];
     const std::size_t mesh = mark(node, "mesh", use_.meshes);
-    if (mark(node, "skin", use_.skins) != SIZE_MAX && mesh != SIZE_MAX) use_.skinned_meshes[mesh] = true;
+    if (mesh != SIZE_MAX && mark(node, "skin", use_.skins) != SIZE_MAX) use_.skinned_meshes[mesh] = true;
     (void)mark(node, "camera", use_.cameras);
     (void)mark(object_in(object_in(node, "extensions"), "KHR_lights_punctual"), "light", use_.lights);
     const Json& relook = object_in(object_in(node, "extras"), "relook");
@@ -152,12 +152,17 @@ class Reach {
     }
   }
 
-  /// The image that resolve_texture_sources() chooses.
+  /// Of several images one is chosen once their data is known (resolve_texture_sources): each alone may be missing.
   void mark_source(const Json& texture) {
     const Json& extensions = object_in(texture, "extensions");
+    const Json* only = nullptr;
     for (const Json* owner : {&object_in(extensions, "EXT_texture_webp"), &texture,
-                              &object_in(extensions, "KHR_texture_basisu")})
-      if (mark(*owner, "source", use_.images) != SIZE_MAX) return;
+                              &object_in(extensions, "KHR_texture_basisu")}) {
+      if (index_in(*owner, "source", use_.images.size()) == SIZE_MAX) continue;
+      if (only != nullptr) return;
+      only = owner;
+    }
+    if (only != nullptr) (void)mark(*only, "source", use_.images);
   }
 
   const Json& gltf_;
@@ -187,6 +192,16 @@ const std::vector<bool>& GltfUse::of(Section section) const {
       break;
   }
   return nodes;
+}
+
+bool GltfUse::reads(std::size_t mesh, std::size_t primitive, std::string_view semantic) const {
+  const Primitive& read = primitives[mesh][primitive];
+  if (!meshes[mesh] || semantic == "TANGENT") return false;
+  if (semantic == "NORMAL") return read.is_lit;
+  if (semantic.starts_with("JOINTS_") || semantic.starts_with("WEIGHTS_")) return skinned_meshes[mesh];
+  if (semantic.starts_with("TEXCOORD_"))
+    return (semantic == "TEXCOORD_0" && read.uv[0]) || (semantic == "TEXCOORD_1" && read.uv[1]);
+  return semantic == "POSITION" || semantic == "COLOR_0";
 }
 
 GltfUse gltf_use(const Json& gltf) { return Reach(gltf).take(); }

@@ -21,6 +21,8 @@ struct GltfUse {
   std::vector<std::vector<Primitive>> primitives;  // by mesh
 
   [[nodiscard]] const std::vector<bool>& of(Section section) const;
+  /// Whether a column of a primitive, or of its morph targets, counts for the picture; tangents can be derived.
+  [[nodiscard]] bool reads(std::size_t mesh, std::size_t primitive, std::string_view semantic) const;
 };
 
 /// Requires: every index in `gltf` is in range and its nodes are trees. Other values may be wrong.

@@ -20,7 +20,6 @@ class ValueCheck {
 
   /// Whether nothing had to be left out.
   bool object(const Schema& schema, Json& value, const std::string& pointer) {
-    bool is_whole = true;
     for (const Field& field : schema.fields) {
       const auto found = value.find(field.key);
       const bool must_be_there = field.required && field.kind == FieldKind::choice;
@@ -29,7 +28,7 @@ class ValueCheck {
         if (is_used_) throw InputError(file_, pointer, fault);
         tolerate(file_, pointer, fault + "; the scene does not use it", warnings_);
         value[std::string(field.key)] = field.choices.front();
-        is_whole = false;
+        is_whole_ = false;
       }
       if (found == value.end()) continue;
       if (field.key == "extras") continue;  // relook's own, or anybody's: look_check reads what is relook's
@@ -40,9 +39,9 @@ class ValueCheck {
       tolerate(file_, fault->place, fault->what + "; the scene does not use it: ignored", warnings_);
       value.erase(found);
       if (must_be_there) value[std::string(field.key)] = field.choices.front();
-      is_whole = false;
+      is_whole_ = false;
     }
-    return is_whole;
+    return is_whole_;
   }
 
  private:
@@ -130,7 +129,7 @@ class ValueCheck {
     return Fault{place, "\"" + printable(word) + "\" is not one of " + known};
   }
 
-  bool is_used_;
+  bool is_used_, is_whole_ = true;
   std::string_view file_;
   std::vector<std::string>& warnings_;
 };

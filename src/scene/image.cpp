@@ -33,11 +33,11 @@ std::string format_name(BytesView encoded) {
 
 /// More pixels than this cannot be in one byte of a format: deflate shrinks 1032 to 1 at most, and a PNG byte may hold
 /// eight pixels; Radiance runs hold 127 of a channel in two bytes; a JPEG needs a bit for each block of 64. A WebP image
-/// of one colour needs no bits for its pixels.
-std::uint64_t most_pixels_per_byte(std::string_view format) {
-  if (format == "png") return 8256;
-  if (format == "webp") return kMostImagePixels;
-  return format == "hdr" ? 64 : 1032;
+/// of one colour needs no bits for its pixels: it may be as large as textures are, larger ones need as much as a PNG.
+std::uint64_t most_pixels(std::string_view format, std::uint64_t bytes) {
+  constexpr std::uint64_t kAlwaysFine = std::uint64_t{1} << 24;
+  if (format == "webp") return bounded_sum(kAlwaysFine, bounded_product(bytes, 8256));
+  return bounded_product(bytes, format == "png" ? 8256 : format == "hdr" ? 64 : 1032);
 }
 
 std::uint64_t texels_of_pyramid(std::uint32_t width, std::uint32_t height) {
@@ -62,7 +62,7 @@ class OpenImage {
     image_ = open_image(format_.c_str(), stream, error);
     if (!image_) fail(error);
     spec_ = image_->spec();
-    check_header(bounded_product(stream.size(), most_pixels_per_byte(format_)));
+    check_header(most_pixels(format_, stream.size()));
     if (format_ == "webp") hold_whole();
   }
 

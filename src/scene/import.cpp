@@ -130,8 +130,8 @@ ImportedGltf import_gltf(const std::filesystem::path& path) {
   convert_specular_glossiness(source.json, imported.images, source.file, imported.warnings, share);
   GltfModel model = parse_model(source.json, std::move(buffers), source.file);
   const JsonView root(source.json, source.file);
-  unpack_draco(root, model, imported.warnings, share);
-  unpack_meshopt(root, model, accessors_of_scene(root, model), imported.warnings, share);
+  unpack_draco(root, model, use, imported.warnings, share);
+  unpack_meshopt(root, model, accessors_of_scene(root, model, use), imported.warnings, share);
   imported.meshes = decode_meshes(model, use, source.file, imported.warnings, share);
   imported.instances = decode_instances(source.json, model, use, source.file, share);
   imported.inverse_binds = decode_skins(source.json, model, source.file, imported.warnings, share);

@@ -41,7 +41,10 @@ SurfaceOptics metallic_roughness_optics(const Material& m) {
   optics.refracts = m.transmission * texture_range(m.slot(Slot::transmission)).second.r > 0 && has_dielectric;
   optics.volume = optics.refracts && m.thickness > 0;
   optics.bent = optics.volume;
-  optics.dielectric_cut = optics.refracts && !has_metal && !has_film;
+  // So does an ior of 0, and a specular colour above 1 beyond what the ior says.
+  const Color tint = m.specular_color;
+  const bool is_bright = m.ior < 1 || std::max({tint.x, tint.y, tint.z}) > 1;
+  optics.dielectric_cut = optics.refracts && !has_metal && !has_film && !is_bright;
   return optics;
 }
 
