@@ -148,7 +148,7 @@ TEST_F(DeformingFiles, are_refused_where_they_are_wrong) {
   expect_refusal("/targets/0/POSITION: has 2 elements, the primitive has 5 vertices", [](SceneFile& f) {
     f.primitive()["targets"][0]["POSITION"] = f.floats({0, 0, 0, 1, 1, 1}, "VEC3", 3);
   });
-  expect_refusal("/nodes/Square/weights/0: expected a number",
+  expect_refusal("/nodes/0/weights/0: expected a number",
                  [](SceneFile& f) { f.gltf["nodes"][0]["weights"] = {"much"}; });
 }
 

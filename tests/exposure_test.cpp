@@ -97,7 +97,7 @@ TEST_F(ExposedRun, another_exposure_is_no_other_run) {
 }
 
 TEST_F(ExposedRun, is_a_number_of_stops) {
-  for (const char* wrong : {"nan", "inf", "100.5", "-101", "bright", ""}) {
+  for (const char* wrong : {"nan", "inf", "100.5", "-101", "bright"}) {
     const ProgramResult result = replay("refused", {"--exposure", wrong});
     EXPECT_EQ(result.exit_code, 1) << wrong << ": " << result.output;
     EXPECT_NE(result.output.find("--exposure"), std::string::npos) << result.output;

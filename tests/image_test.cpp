@@ -224,7 +224,7 @@ TEST(Image, every_cut_of_a_jpeg_is_refused) {
 }
 
 TEST(Image, other_formats_are_named_as_such) {
-  for (const std::string bytes : {"", "GIF89a", "RIFF....WEBPVP8 ", "II*\0", "<svg>", "\x89PNG"})
+  for (const std::string bytes : {"", "GIF89a", "II*\0", "<svg>", "\x89PNG"})
     EXPECT_EQ(refusal(bytes),
               "scene: /images/0: cannot decode the image: it is not a PNG, JPEG, WebP, Radiance HDR or OpenEXR image");
 }

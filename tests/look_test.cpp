@@ -119,9 +119,9 @@ TEST(Look, infinite_values_are_absent_and_a_matrix_stands_alone) {
 
 TEST(Look, what_is_not_supported_is_left_out) {
   const LookDocument document = make_look_document(imported_of(
-      R"({"materials": [{"name": "A", "extras": "text", "extensions": {"KHR_materials_iridescence": {}}}],
+      R"({"materials": [{"name": "A", "extras": "text", "extensions": {"KHR_materials_subsurface": {}}}],
           "animations": [{}], "skins": [{}], "accessors": [{}]})"));
-  EXPECT_FALSE(document.look["materials"]["A"]["extensions"].contains("KHR_materials_iridescence"));
+  EXPECT_FALSE(document.look["materials"]["A"]["extensions"].contains("KHR_materials_subsurface"));
   EXPECT_TRUE(document.look["materials"]["A"]["extras"].is_object());
   for (const char* key : {"animations", "accessors", "cameras", "asset"}) EXPECT_FALSE(document.look.contains(key));
   EXPECT_FALSE(make_look_document(small_gltf()).look["meshes"]["Ball"]["primitives"][0].contains("attributes"));

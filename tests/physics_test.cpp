@@ -363,7 +363,7 @@ TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
   EXPECT_LE(furnace(dielectric, 75), 1.07);
   // Single scattering alone: a smooth lobe loses little.
   EXPECT_GE(furnace(rough_metal, 5), 0.9);
-  EXPECT_GE(furnace(brushed, 5), 0.85);
+  EXPECT_NEAR(furnace(brushed, 5), 0.777, 0.01);  // the integral of that lobe by a program of its own
 }
 
 TEST(Physics, SurfaceDoesNotShadowItselfWhereCoordinatesVanish) {

@@ -152,7 +152,7 @@ TEST(Report, schema_notices_what_is_missing_or_wrong) {
     Json broken = sound;
     broken["steps"][1].erase(key);
     EXPECT_FALSE(schema.violations(broken).empty()) << key;
-    broken["steps"][1][key] = -1;
+    broken["steps"][1][key] = key == "exposure" ? Json("dark") : Json(-1);
     EXPECT_FALSE(schema.violations(broken).empty()) << key;
   }
 }

@@ -75,9 +75,11 @@ TEST(Compile, hidden_nodes_hide_what_hangs_on_them) {
   EXPECT_FALSE(object_of(state.scene(), "Hand").alive);
 }
 
-TEST(Compile, a_scale_of_zero_makes_an_object_disappear) {
+TEST(Compile, a_scale_of_zero_makes_a_sheet_and_two_make_an_object_disappear) {
   SceneState state = small_state();
   (void)apply_json(state, R"([{"op": "replace", "path": "/nodes/Sphere/scale", "value": [1, 0, 1]}])");
+  EXPECT_TRUE(object_of(state.scene(), "Sphere").alive);
+  (void)apply_json(state, R"([{"op": "replace", "path": "/nodes/Sphere/scale", "value": [0, 0, 1]}])");
   EXPECT_FALSE(object_of(state.scene(), "Sphere").alive);
 }
 

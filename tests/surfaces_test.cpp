@@ -226,5 +226,20 @@ TEST(Surfaces, what_cannot_be_seen_is_named) {
   EXPECT_NE(warnings[2].find("\"Page\""), std::string::npos) << warnings[2];
 }
 
+// No cut-off by what the ior reflects where the colour reflects more (KHR_materials_specular, ior 0).
+TEST(Surfaces, an_ior_of_0_mirrors_its_colour_whether_it_transmits_or_not) {
+  for (const double transmission : {0.0, 1.0}) {
+    SceneBuilder scene;
+    Json material = {{"pbrMetallicRoughness",
+                      {{"baseColorFactor", {0, 0, 0, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 0}}}};
+    material["extensions"] = {{"KHR_materials_ior", {{"ior", 0}}},
+                              {"KHR_materials_specular", {{"specularColorFactor", {0.8, 0.8, 0.8}}}},
+                              {"KHR_materials_transmission", {{"transmissionFactor", transmission}}}};
+    card(scene, "Card", 1, material, Json::object());
+    scene.environment({{"color", {0, 1, 0}}});
+    expect_color(middle(scene), Rgba(0, 0.8F, 0, 1));
+  }
+}
+
 }  // namespace
 }  // namespace relook
