@@ -145,9 +145,10 @@ std::filesystem::path contained_path(const std::filesystem::path& folder,
   if (uri.empty()) throw InputError(file, where, "an empty file name");
   if (uri.find('\0') != std::string_view::npos) throw InputError(file, where, quoted + " contains a zero byte");
   const std::filesystem::path name(uri);
-  if (uri.find(':') != std::string_view::npos || uri.find('\\') != std::string_view::npos ||
-      (name.is_absolute() && roots.empty()))
+  if (uri.find(':') != std::string_view::npos || uri.find('\\') != std::string_view::npos)
     throw InputError(file, where, quoted + " is not a relative path");
+  if (name.is_absolute() && roots.empty())
+    throw InputError(file, where, quoted + " is not a relative path (--root DIR allows files below DIR)");
 
   std::error_code error;
   const auto base = std::filesystem::canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
