@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "scene/gltf_json.h"
 #include "scene/import_rules.h"
+#include "scene/json_place.h"
 #include "scene/look_names.h"
 
 namespace relook {
@@ -19,21 +20,20 @@ class ValueCheck {
       : is_used_(is_used), file_(file), warnings_(warnings) {}
 
   /// Whether nothing had to be left out.
-  bool object(const Schema& schema, Json& value, const std::string& pointer) {
+  bool object(const Schema& schema, Json& value, const JsonPlace& at) {
     for (const Field& field : schema.fields) {
       const auto found = value.find(field.key);
       const bool must_be_there = field.required && field.kind == FieldKind::choice;
       if (found == value.end() && must_be_there) {
         const std::string fault = "\"" + std::string(field.key) + "\" is missing";
-        if (is_used_) throw InputError(file_, pointer, fault);
-        tolerate(file_, pointer, fault + "; the scene does not use it", warnings_);
+        if (is_used_) throw InputError(file_, at.text(), fault);
+        tolerate(file_, at.text(), fault + "; the scene does not use it", warnings_);
         value[std::string(field.key)] = field.choices.front();
         is_whole_ = false;
       }
       if (found == value.end()) continue;
       if (field.key == "extras") continue;  // relook's own, or anybody's: look_check reads what is relook's
-      const std::string place = pointer + "/" + escape_token(field.key);
-      const std::optional<Fault> fault = member(field, *found, place);
+      const std::optional<Fault> fault = member(field, *found, {&at, field.key});
       if (!fault) continue;
       if (is_used_) throw InputError(file_, fault->place, fault->what);
       tolerate(file_, fault->place, fault->what + "; the scene does not use it: ignored", warnings_);
@@ -48,12 +48,12 @@ class ValueCheck {
   struct Fault {
     std::string place, what;
   };
-  static std::optional<Fault> wrong_type(const std::string& place, std::string_view wanted, const Json& value) {
-    return Fault{place, "expected " + std::string(wanted) + ", got " + std::string(type_noun(value))};
+  static std::optional<Fault> wrong_type(const JsonPlace& place, std::string_view wanted, const Json& value) {
+    return Fault{place.text(), "expected " + std::string(wanted) + ", got " + std::string(type_noun(value))};
   }
 
   /// What is wrong with it, if it cannot be put right.
-  std::optional<Fault> member(const Field& field, Json& value, const std::string& place) {
+  std::optional<Fault> member(const Field& field, Json& value, const JsonPlace& place) {
     switch (field.kind) {
       case FieldKind::number:
         return number(field, value, place);
@@ -76,7 +76,7 @@ class ValueCheck {
       case FieldKind::list:
         if (!value.is_array()) return wrong_type(place, "an array", value);
         for (std::size_t i = 0; i < value.size(); ++i)
-          if (value[i].is_object()) (void)object(*field.inner, value[i], place + "/" + std::to_string(i));
+          if (value[i].is_object()) (void)object(*field.inner, value[i], {&place, {}, i});
         break;
       case FieldKind::texts:
       case FieldKind::name:
@@ -87,46 +87,46 @@ class ValueCheck {
   }
 
   /// 1.0 stands for 1 (glTF 2.0 section 3.1 wants no fraction).
-  std::optional<Fault> integer(const Field& field, Json& value, const std::string& place) {
+  std::optional<Fault> integer(const Field& field, Json& value, const JsonPlace& place) {
     constexpr double kMostExact = 1e9;
     if (!value.is_number_integer()) {
       const double x = value.is_number() ? value.get<double>() : 0.5;
       if (std::floor(x) != x || !(std::abs(x) <= kMostExact)) return wrong_type(place, "an integer", value);
-      tolerate(file_, place, "an integer is written with a fraction", warnings_);
+      tolerate(file_, place.text(), "an integer is written with a fraction", warnings_);
       value = static_cast<std::int64_t>(x);
     }
     return number(field, value, place);
   }
 
-  std::optional<Fault> number(const Field& field, Json& value, const std::string& place) {
+  std::optional<Fault> number(const Field& field, Json& value, const JsonPlace& place) {
     if (!value.is_number()) return wrong_type(place, "a number", value);
     const auto x = value.get<double>();
     const std::optional<double> fit = fitted(field, x);
-    if (!fit) return Fault{place, range_fault(field, value)};
+    if (!fit) return Fault{place.text(), range_fault(field, value)};
     if (*fit == x) return {};
     const bool is_harmless = *fit == kAboveZero || std::abs(*fit) == kUnbounded;  // a float holds no other number
-    if (!is_harmless) tolerate(file_, place, range_fault(field, value) + ": the bound stands", warnings_);
+    if (!is_harmless) tolerate(file_, place.text(), range_fault(field, value) + ": the bound stands", warnings_);
     value = *fit;
     return {};
   }
 
-  std::optional<Fault> reals(const Field& field, Json& value, const std::string& place) {
+  std::optional<Fault> reals(const Field& field, Json& value, const JsonPlace& place) {
     if (!value.is_array()) return wrong_type(place, "an array of numbers", value);
     if (field.count != 0 && value.size() != field.count)
-      return Fault{place, "expected an array of " + std::to_string(field.count) + " numbers, got " +
+      return Fault{place.text(), "expected an array of " + std::to_string(field.count) + " numbers, got " +
                               std::to_string(value.size())};
     for (std::size_t i = 0; i < value.size(); ++i)
-      if (auto fault = number(field, value[i], place + "/" + std::to_string(i))) return fault;
+      if (auto fault = number(field, value[i], {&place, {}, i})) return fault;
     return {};
   }
 
-  static std::optional<Fault> choice(const Field& field, const Json& value, const std::string& place) {
+  static std::optional<Fault> choice(const Field& field, const Json& value, const JsonPlace& place) {
     if (!value.is_string()) return wrong_type(place, "a string", value);
     const auto& word = value.get_ref<const std::string&>();
     if (std::ranges::find(field.choices, word) != field.choices.end()) return {};
     std::string known;
     for (const std::string_view option : field.choices) known += (known.empty() ? "" : ", ") + std::string(option);
-    return Fault{place, "\"" + printable(word) + "\" is not one of " + known};
+    return Fault{place.text(), "\"" + printable(word) + "\" is not one of " + known};
   }
 
   bool is_used_, is_whole_ = true;
@@ -190,7 +190,7 @@ void check_idle_cone(Json& light, const std::string& pointer, std::string_view f
                      std::vector<std::string>& warnings) {
   if (light.value("type", Json()) == "spot" || !light.contains("spot")) return;
   Json cone = {{"type", "point"}, {"spot", light["spot"]}};
-  if (!ValueCheck(false, file, warnings).object(schema_of(Section::lights), cone, pointer)) light.erase("spot");
+  if (!ValueCheck(false, file, warnings).object(schema_of(Section::lights), cone, {nullptr, pointer})) light.erase("spot");
 }
 
 /// What no table says of a node's transform. Rounding errors of a matrix pass; its fourth row then is 0 0 0 1.
@@ -237,7 +237,7 @@ std::string lens_fault(const Json& camera) {
 
 void check_camera(Json& camera, const std::string& pointer, bool is_used, std::string_view file,
                   std::vector<std::string>& warnings) {
-  if (!ValueCheck(is_used, file, warnings).object(camera_schema(), camera, pointer)) return;
+  if (!ValueCheck(is_used, file, warnings).object(camera_schema(), camera, {nullptr, pointer})) return;
   const std::string fault = lens_fault(camera);
   if (fault.empty()) return;
   if (is_used) throw InputError(file, pointer, fault);
@@ -257,7 +257,7 @@ void check_section(Json& gltf, Section section, const GltfUse& use, std::string_
     if (section == Section::materials) split_emission(thing, pointer, file, warnings);
     const Schema& schema = section == Section::materials ? file_material_schema() : schema_of(section);
     if (section == Section::lights) check_idle_cone(thing, pointer, file, warnings);
-    (void)ValueCheck(is_used, file, warnings).object(schema, thing, pointer);
+    (void)ValueCheck(is_used, file, warnings).object(schema, thing, {nullptr, pointer});
     if (section == Section::nodes && is_used) check_transform(thing, pointer, file);
     if (section == Section::lights) fit_cone(thing, pointer, is_used, file, warnings);
   }

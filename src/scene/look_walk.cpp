@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "scene/json_place.h"
 #include "scene/look_schema.h"
 
 namespace relook {
@@ -52,18 +53,6 @@ void walk_names(const Schema& schema, Value& value, const Visit& visit) {
   }
 }
 
-/// The way down to a value; spelled out only when something is wrong there.
-struct Place {
-  const Place* parent = nullptr;
-  std::string_view key;  // empty: `index` counts
-  std::size_t index = 0;
-
-  [[nodiscard]] std::string text() const {
-    if (parent == nullptr) return std::string(key);
-    return parent->text() + "/" + (key.empty() ? std::to_string(index) : escape_token(key));
-  }
-};
-
 std::vector<std::string> variant_names(const LookDocument& document) {
   const Json::json_pointer place("/extensions/KHR_materials_variants/variants");
   std::vector<std::string> names;
@@ -78,7 +67,7 @@ class Checker {
  public:
   Checker(const LookDocument& document, std::string_view file) : document_(document), file_(file) {}
 
-  void object(const Schema& schema, const Json& value, const Place& place) const {
+  void object(const Schema& schema, const Json& value, const JsonPlace& place) const {
     if (!value.is_object()) fail(place, "expected an object, got " + std::string(type_noun(value)));
     std::size_t known = 0;
     for (const Field& field : schema.fields) {
@@ -94,11 +83,11 @@ class Checker {
   }
 
  private:
-  [[noreturn]] void fail(const Place& place, const std::string& what) const {
+  [[noreturn]] void fail(const JsonPlace& place, const std::string& what) const {
     throw LookError(file_, place.text(), what);
   }
 
-  [[noreturn]] void unknown_key(const Schema& schema, const Json& value, const Place& place) const {
+  [[noreturn]] void unknown_key(const Schema& schema, const Json& value, const JsonPlace& place) const {
     std::vector<std::string> known;
     for (const Field& field : schema.fields) known.emplace_back(field.key);
     for (const auto& item : value.items()) {
@@ -111,7 +100,7 @@ class Checker {
     fail(place, "unknown key");
   }
 
-  void member(const Field& field, const Json& value, const Place& place) const {
+  void member(const Field& field, const Json& value, const JsonPlace& place) const {
     switch (field.kind) {
       case FieldKind::number:
         number(field, value, place);
@@ -127,7 +116,7 @@ class Checker {
         text(value, place);
         break;
       case FieldKind::texts:
-        each(value, place, [&](const Json& item, const Place& at) { text(item, at); });
+        each(value, place, [&](const Json& item, const JsonPlace& at) { text(item, at); });
         break;
       case FieldKind::reals:
         reals(field, value, place);
@@ -139,33 +128,33 @@ class Checker {
         name(field.target, value, place);
         break;
       case FieldKind::names:
-        each(value, place, [&](const Json& item, const Place& at) { name(field.target, item, at); });
+        each(value, place, [&](const Json& item, const JsonPlace& at) { name(field.target, item, at); });
         break;
       case FieldKind::object:
         object(*field.inner, value, place);
         break;
       case FieldKind::list:
-        each(value, place, [&](const Json& item, const Place& at) { object(*field.inner, item, at); });
+        each(value, place, [&](const Json& item, const JsonPlace& at) { object(*field.inner, item, at); });
         break;
     }
   }
 
   template <class Body>
-  void each(const Json& value, const Place& place, const Body& body) const {
+  void each(const Json& value, const JsonPlace& place, const Body& body) const {
     if (!value.is_array()) fail(place, "expected an array, got " + std::string(type_noun(value)));
     for (std::size_t i = 0; i < value.size(); ++i) body(value[i], {&place, {}, i});
   }
 
-  void text(const Json& value, const Place& place) const {
+  void text(const Json& value, const JsonPlace& place) const {
     if (!value.is_string()) fail(place, "expected a string, got " + std::string(type_noun(value)));
   }
 
-  void number(const Field& field, const Json& value, const Place& place) const {
+  void number(const Field& field, const Json& value, const JsonPlace& place) const {
     if (!value.is_number()) fail(place, "expected a number, got " + std::string(type_noun(value)));
     if (!is_allowed(field, value.get<double>())) fail(place, range_fault(field, value));
   }
 
-  void reals(const Field& field, const Json& value, const Place& place) const {
+  void reals(const Field& field, const Json& value, const JsonPlace& place) const {
     if (field.count == 0 && !value.is_array())
       fail(place, "expected an array of numbers, got " + std::string(type_noun(value)));
     if (field.count != 0 && (!value.is_array() || value.size() != field.count))
@@ -174,7 +163,7 @@ class Checker {
     for (std::size_t i = 0; i < value.size(); ++i) number(field, value[i], {&place, {}, i});
   }
 
-  void choice(const Field& field, const Json& value, const Place& place) const {
+  void choice(const Field& field, const Json& value, const JsonPlace& place) const {
     text(value, place);
     const auto& word = value.get_ref<const std::string&>();
     if (std::find(field.choices.begin(), field.choices.end(), word) != field.choices.end()) return;
@@ -184,7 +173,7 @@ class Checker {
     fail(place, "\"" + word + "\" is not one of " + known + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
   }
 
-  void name(Target target, const Json& value, const Place& place) const {
+  void name(Target target, const Json& value, const JsonPlace& place) const {
     if (value.is_number_unsigned())
       fail(place, "there is no " + std::string(target_noun(target)) + " of index " + short_number(value));
     if (!value.is_string())

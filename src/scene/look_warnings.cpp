@@ -1,5 +1,7 @@
 #include "scene/look_warnings.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -30,7 +32,18 @@ class Kind {
   std::size_t count_ = 0;
 };
 
+/// Without small scales, matrices and instances nothing is flattened: as a rule there is no need to look further.
+bool may_flatten(const Json& node) {
+  constexpr double kSmall = 1e-3;
+  if (node.contains("matrix") || node.contains("extras")) return true;
+  const auto scale = node.find("scale");
+  return scale != node.end() && std::ranges::any_of(*scale, [](const Json& part) {
+           return std::abs(part.get<double>()) < kSmall;
+         });
+}
+
 void warn_of_places(const LookDocument& document, std::vector<std::string>& warnings) {
+  if (std::ranges::none_of(document.look.at("nodes"), may_flatten)) return;
   Kind objects(warnings), lights(warnings);
   struct Count {
     std::size_t all = 0, lost = 0;
