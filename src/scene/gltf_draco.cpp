@@ -128,7 +128,8 @@ class DracoSource {
                          " triangles and " + std::to_string(mesh_.points()) + " vertices, its accessors say otherwise");
   }
 
-  std::size_t column(std::uint32_t id, const GltfAccessor& declared, const JsonView& place) {
+  /// `declared`: a copy, since the model's accessors grow.
+  std::size_t column(std::uint32_t id, const GltfAccessor declared, const JsonView& place) {
     const auto width = mesh_.width(id);
     if (!width) place.fail("the Draco data has no attribute " + std::to_string(id));
     if (*width != declared.width)
@@ -180,7 +181,7 @@ class DracoSource {
 void unpack(std::size_t view, const std::vector<DracoUse>& uses, GltfModel& model, std::vector<std::string>& warnings,
             ImportShare& share) {
   const JsonView place = uses.front().packed;
-  const auto& [buffer, offset, length, stride] = model.views[view];
+  const auto [buffer, offset, length, stride] = model.views[view];  // a copy: views are added below
   if (model.buffers[buffer].empty()) place.at("bufferView").fail("the buffer of this buffer view has no data");
   DracoLimits limits = limits_of(uses, model);
   ImportShare working;
