@@ -2,6 +2,7 @@
 // what relook does not support is left out.
 #include "scene/look.h"
 
+#include "scene/gltf_use.h"
 #include "scene/import_memory.h"
 #include "scene/look_check.h"
 #include "scene/look_names.h"
@@ -15,12 +16,6 @@ const Json& member_or_empty(const Json& value, std::string_view key) {
   if (!value.is_object()) return empty;
   const auto found = value.find(key);
   return found == value.end() ? empty : *found;
-}
-
-/// The glTF array behind a section.
-const Json& gltf_array(const Json& gltf, Section section) {
-  if (section != Section::lights) return member_or_empty(gltf, section_name(section));
-  return member_or_empty(member_or_empty(member_or_empty(gltf, "extensions"), "KHR_lights_punctual"), "lights");
 }
 
 /// One unique printable name per item of a glTF array.

@@ -125,7 +125,8 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera) {
                         .normalized(),
                     true});
   ways.push_back({Imath::V3d(camera.forward), false});
-  const bool is_inside = world_bounds(document).intersects(camera.eye);
+  const WideBox bounds = world_bounds(document);
+  const bool is_inside = bounds.intersects(camera.eye);
   const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, ways) : std::vector<Obstacle>();
   for (std::size_t i = 0; i < std::size(lights); ++i)  // a diffuse surface reflects 1 / pi of the illuminance
     add_light(document, lights[i].name,
@@ -137,7 +138,7 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera) {
                            return std::isfinite(o.distance);
                          });
   if (!is_closed) return "";
-  const double extent = world_bounds(document).size().length() / 2;
+  const double extent = bounds.size().length() / 2;
   const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
   add_light(document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
             {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
 #include "scene/compile_material.h"
@@ -42,26 +41,28 @@ bool may_flatten(const Json& node) {
          });
 }
 
+/// Of the mesh of a node, which a skin places wherever the node is; "" if nothing.
+std::string what_is_lost(const LookDocument& document, const Json& node, const WideTransform& world) {
+  if (!node.contains("mesh") || node.contains("skin")) return "";
+  const Json* instances = member_at(node, {"extras", "relook", "instances"});
+  const std::vector<Transform> alone(1);
+  const std::vector<Transform>& matrices =
+      instances == nullptr ? alone : document.instances.at(instances->get<std::string>());
+  const auto lost = std::ranges::count_if(matrices, [&](const Transform& matrix) {
+    const WideTransform placed = widened(matrix) * world;
+    return is_in_range(placed) && dimensions_of(rounded(placed, WidePoint(0, 0, 0))) < 2;
+  });
+  if (lost == 0) return "";
+  if (static_cast<std::size_t>(lost) == matrices.size()) return "its mesh is not drawn";
+  return std::to_string(lost) + " of its " + std::to_string(matrices.size()) + " instances are not drawn";
+}
+
 void warn_of_places(const LookDocument& document, std::vector<std::string>& warnings) {
   if (std::ranges::none_of(document.look.at("nodes"), may_flatten)) return;
   Kind objects(warnings), lights(warnings);
-  struct Count {
-    std::size_t all = 0, lost = 0;
-  };
-  std::map<std::string, Count> counts;  // of primitives and instances, by node
-  for_each_placed_mesh(document, [&](const std::string& node, const Mesh&, const WideTransform& world) {
-    Count& count = counts[node];
-    ++count.all;
-    if (is_in_range(world) && dimensions_of(rounded(world, WidePoint(0, 0, 0))) < 2) ++count.lost;
-  });
-  for (const auto& [node, count] : counts) {
-    if (count.lost == 0) continue;
-    const std::string what = count.lost == count.all ? "its mesh is not drawn"
-                                                     : std::to_string(count.lost) + " of its " +
-                                                           std::to_string(count.all) + " instances are not drawn";
-    objects.add("node \"" + node + "\" is scaled to nothing: " + what);
-  }
   for_each_place(document, [&](const std::string& name, const Json& node, const WideTransform& world) {
+    if (const std::string lost = what_is_lost(document, node, world); !lost.empty())
+      objects.add("node \"" + name + "\" is scaled to nothing: " + lost);
     const Json* light = member_at(node, {"extensions", "KHR_lights_punctual", "light"});
     if (light == nullptr) return;
     const Json& type = document.look.at("lights").at(light->get<std::string>()).at("type");
