@@ -5,14 +5,14 @@
 #include <span>
 
 #include "edit/journal.h"
-#include "engine/cached_image.h"
-#include "engine/pixel_history.h"
-#include "load_cache.h"
-#include "outputs.h"
+#include "image/cached_image.h"
+#include "input/load_cache.h"
+#include "options/outputs.h"
+#include "options/values.h"
 #include "report/edit_hashes.h"
+#include "report/pixel_history.h"
 #include "report/places.h"
 #include "report/report_file.h"
-#include "values.h"
 #include "verbs.h"
 
 namespace relook {

@@ -1,7 +1,7 @@
 #include "cache/cache_names.h"
-#include "engine/cached_image.h"
-#include "engine/cached_tunnels.h"
-#include "load_cache.h"
+#include "image/cached_image.h"
+#include "image/cached_tunnels.h"
+#include "input/load_cache.h"
 #include "verbs.h"
 
 namespace relook {

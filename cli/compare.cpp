@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
 
-#include "compare_inputs.h"
-#include "compare_page.h"
 #include "compare_text.h"
-#include "engine/run_table.h"
+#include "input/compare_inputs.h"
+#include "page/compare_page.h"
+#include "report/run_table.h"
 #include "verbs.h"
 
 namespace relook {

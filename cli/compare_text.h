@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/frame_comparison.h"
+#include "compare/frame_comparison.h"
 
 namespace relook {
 

@@ -1,12 +1,12 @@
 #include <filesystem>
 
-#include "base/standard_input.h"
+#include "base/system/standard_input.h"
 #include "cache/cache.h"
+#include "input/load_cache.h"
+#include "input/load_scene.h"
 #include "inspect_journal.h"
-#include "load_cache.h"
-#include "load_scene.h"
-#include "outputs.h"
-#include "scene/look.h"
+#include "options/outputs.h"
+#include "scene/look/look.h"
 #include "verbs.h"
 
 namespace relook {

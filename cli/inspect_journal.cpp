@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include "edit/apply.h"
 #include "edit/journal.h"
-#include "load_cache.h"
-#include "load_scene.h"
-#include "outputs.h"
+#include "input/load_cache.h"
+#include "input/load_scene.h"
+#include "options/outputs.h"
 #include "report/edit_hashes.h"
 
 namespace relook {

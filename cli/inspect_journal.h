@@ -1,7 +1,7 @@
 // `inspect JOURNAL`: its steps and, with --scene, the class of each and why, without rendering.
 #pragma once
-#include "arguments.h"
-#include "console.h"
+#include "options/arguments.h"
+#include "terminal/console.h"
 
 namespace relook {
 

@@ -6,9 +6,9 @@
 
 #include "edit/apply.h"
 #include "edit/draft_diff.h"
-#include "load_scene.h"
-#include "outputs.h"
-#include "scene/animation.h"
+#include "input/load_scene.h"
+#include "options/outputs.h"
+#include "scene/gltf/animation.h"
 #include "verbs.h"
 
 namespace relook {

@@ -6,10 +6,10 @@
 #include <string_view>
 
 #include "base/parallel.h"
-#include "outputs.h"
-#include "reach.h"
-#include "scene/image_library.h"
-#include "standard_streams.h"
+#include "options/outputs.h"
+#include "options/reach.h"
+#include "scene/texture/image_library.h"
+#include "terminal/standard_streams.h"
 #include "verbs.h"
 
 namespace relook {

@@ -1,12 +1,12 @@
 // `relook plan`: the class, samples, seconds and bytes of each frame that a replay will have, without replaying it.
-#include "engine/plan.h"
+#include "replay/plan.h"
 
 #include <algorithm>
 #include <cstdio>
 
 #include "edit/apply.h"
-#include "load_cache.h"
-#include "outputs.h"
+#include "input/load_cache.h"
+#include "options/outputs.h"
 #include "report/edit_hashes.h"
 #include "verbs.h"
 

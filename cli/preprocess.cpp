@@ -1,15 +1,15 @@
 #include <optional>
 
-#include "base/memory.h"
+#include "base/system/memory.h"
 #include "cache/cache.h"
-#include "cache_output.h"
-#include "engine/cached_image.h"
-#include "engine/image_pieces.h"
-#include "engine/path_classes.h"
-#include "engine/render.h"
-#include "load_cache.h"
-#include "load_scene.h"
-#include "outputs.h"
+#include "image/cached_image.h"
+#include "image/image_pieces.h"
+#include "image/path_classes.h"
+#include "image/render.h"
+#include "input/load_cache.h"
+#include "input/load_scene.h"
+#include "options/cache_output.h"
+#include "options/outputs.h"
 #include "verbs.h"
 
 namespace relook {

@@ -1,18 +1,18 @@
-#include "engine/render.h"
+#include "image/render.h"
 
 #include <functional>
 #include <optional>
 
 #include "base/hash.h"
 #include "edit/apply.h"
-#include "engine/frame_layers.h"
-#include "engine/layered_frame.h"
-#include "engine/preview.h"
-#include "engine/report.h"
-#include "load_scene.h"
-#include "named_files.h"
-#include "outputs.h"
+#include "frame/frame_layers.h"
+#include "frame/preview.h"
+#include "image/layered_frame.h"
+#include "input/load_scene.h"
+#include "options/named_files.h"
+#include "options/outputs.h"
 #include "report/edit_hashes.h"
+#include "report/report.h"
 #include "verbs.h"
 
 namespace relook {

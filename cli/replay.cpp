@@ -2,18 +2,18 @@
 #include <optional>
 #include <set>
 
-#include "base/memory.h"
 #include "base/parallel.h"
+#include "base/system/memory.h"
 #include "cache/manifest.h"
 #include "edit/apply.h"
-#include "engine/chosen_parameters.h"
-#include "engine/frame_layers.h"
-#include "engine/memory_needs.h"
-#include "journal_run.h"
-#include "load_cache.h"
-#include "load_scene.h"
-#include "outputs.h"
+#include "frame/frame_layers.h"
+#include "input/load_cache.h"
+#include "input/load_scene.h"
+#include "options/outputs.h"
+#include "replay/chosen_parameters.h"
+#include "replay/memory_needs.h"
 #include "report/run_source.h"
+#include "run/journal_run.h"
 #include "verbs.h"
 
 namespace relook {

@@ -1,7 +1,7 @@
 // What each eviction policy and budget would have cost a replay, from its access log.
 #include <cstdio>
 
-#include "cache/access_log.h"
+#include "cache/residency/access_log.h"
 #include "verbs.h"
 
 namespace relook {

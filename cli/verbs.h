@@ -1,8 +1,8 @@
 // One function per verb. Errors are thrown; main() prints them.
 #pragma once
-#include "arguments.h"
 #include "base/error.h"
-#include "console.h"
+#include "options/arguments.h"
+#include "terminal/console.h"
 
 namespace relook {
 

@@ -12,10 +12,10 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "cache/arithmetic.h"
-#include "engine/replay.h"
+#include "replay/replay.h"
 #include "run_program.h"
 #include "scene/camera.h"
-#include "scene/import.h"
+#include "scene/gltf/import.h"
 #include "test_scenes.h"
 
 namespace relook {

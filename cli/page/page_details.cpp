@@ -3,7 +3,7 @@
 #include <span>
 #include <utility>
 
-#include "engine/deflate.h"
+#include "frame/deflate.h"
 #include "page/page.h"
 
 namespace relook {

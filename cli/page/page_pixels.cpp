@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "page/page.h"
-#include "trace/ray_tree.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 namespace {

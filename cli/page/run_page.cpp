@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "base/files.h"
-#include "engine/display_view.h"
+#include "frame/display_view.h"
 #include "page/page.h"
 #include "page/page_details.h"
 #include "page/page_files.h"
 #include "page/page_pixels.h"
 #include "page/run_entry.h"
-#include "trace/ray_tree.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 namespace {

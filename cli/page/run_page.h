@@ -8,7 +8,7 @@
 
 #include "base/json.h"
 #include "edit/journal.h"
-#include "engine/report_entries.h"
+#include "report/report_entries.h"
 
 namespace relook {
 

@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "engine/exr_tiles.h"
-#include "trace/ray_tree.h"
+#include "frame/exr_tiles.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 namespace {

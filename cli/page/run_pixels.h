@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/frame_tiles.h"
-#include "engine/preview.h"
+#include "frame/frame_tiles.h"
+#include "frame/preview.h"
 
 namespace relook {
 

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file_names.h"
 #include "base/hash.h"
+#include "base/import_memory.h"
 #include "base/parallel.h"
 #include "cache/cache_names.h"
 #include "cache/cache_parts.h"
@@ -15,7 +16,6 @@
 #include "cache/manifest.h"
 #include "cache/scene_parts.h"
 #include "cache/tunnel_parts.h"
-#include "scene/import_memory.h"
 
 namespace relook {
 namespace {

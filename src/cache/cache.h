@@ -12,10 +12,10 @@
 #include "base/json.h"
 #include "region/tile_tunnels.h"
 #include "region/tunnel_shape.h"
-#include "scene/image.h"
-#include "scene/look.h"
-#include "trace/ray_path.h"
-#include "trace/ray_tree.h"
+#include "scene/look/look.h"
+#include "scene/texture/image.h"
+#include "trace/tree/ray_path.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 

@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/import_memory.h"
 #include "cache/manifest.h"
-#include "scene/import_memory.h"
 
 namespace relook {
 namespace {

@@ -12,7 +12,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "region/path_groups.h"
-#include "trace/shadow_counter.h"
+#include "trace/tree/shadow_counter.h"
 
 namespace relook {
 namespace {

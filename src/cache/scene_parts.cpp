@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/import_memory.h"
 #include "base/json.h"
-#include "scene/import_memory.h"
 
 namespace relook {
 namespace {

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/import_memory.h"
 #include "base/json.h"
 #include "cache/scene_parts.h"
-#include "scene/import_memory.h"
 
 namespace relook {
 namespace {

@@ -10,9 +10,9 @@
 #include "cache/cache.h"
 #include "cache/cache_folder.h"
 #include "cache/cache_parts.h"
-#include "cache/eviction.h"
 #include "cache/image_parts.h"
 #include "cache/manifest.h"
+#include "cache/residency/eviction.h"
 #include "cache/staged_folder.h"
 #include "cache/tunnel_parts.h"
 

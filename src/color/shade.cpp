@@ -1,7 +1,7 @@
 #include "color/shade.h"
 
 #include "color/block_shading.h"
-#include "color/compress.h"
+#include "color/compress/compress.h"
 
 namespace relook {
 

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "color/compressed_block.h"
-#include "color/evaluate.h"
-#include "color/illumination.h"
-#include "trace/path_cursor.h"
+#include "color/compress/compressed_block.h"
+#include "color/expression/evaluate.h"
+#include "color/surface/illumination.h"
+#include "trace/tree/path_cursor.h"
 
 namespace relook {
 

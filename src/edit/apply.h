@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "edit/journal.h"
-#include "scene/state.h"
+#include "scene/compile/state.h"
 
 namespace relook {
 

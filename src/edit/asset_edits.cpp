@@ -2,11 +2,11 @@
 #include <map>
 
 #include "base/hash.h"
+#include "base/import_memory.h"
 #include "edit/transaction.h"
-#include "scene/import.h"
-#include "scene/import_memory.h"
-#include "scene/import_rules.h"
-#include "scene/look_names.h"
+#include "scene/gltf/import.h"
+#include "scene/gltf/import_rules.h"
+#include "scene/look/look_names.h"
 
 namespace relook {
 namespace {

@@ -6,8 +6,8 @@
 #include "base/error.h"
 #include "edit/journal_draft.h"
 #include "edit/patch.h"
-#include "scene/look_names.h"
-#include "scene/look_schema.h"
+#include "scene/look/look_names.h"
+#include "scene/look/look_schema.h"
 
 namespace relook {
 namespace {

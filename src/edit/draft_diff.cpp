@@ -5,8 +5,8 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "edit/patch.h"
-#include "scene/gltf_write.h"
-#include "scene/look_names.h"
+#include "scene/gltf/gltf_write.h"
+#include "scene/look/look_names.h"
 
 namespace relook {
 namespace {

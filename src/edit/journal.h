@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/json.h"
-#include "base/standard_input.h"
+#include "base/system/standard_input.h"
 
 namespace relook {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/json.h"
-#include "scene/animation.h"
-#include "scene/look.h"
-#include "scene/state.h"
+#include "scene/compile/state.h"
+#include "scene/gltf/animation.h"
+#include "scene/look/look.h"
 
 namespace relook {
 

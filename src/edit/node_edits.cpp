@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "edit/transaction.h"
-#include "scene/look_names.h"
+#include "scene/look/look_names.h"
 
 namespace relook {
 namespace {

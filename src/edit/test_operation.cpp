@@ -1,6 +1,6 @@
 // "test": compares as "replace" would write, names for glTF indices included.
 #include "edit/transaction.h"
-#include "scene/look_names.h"
+#include "scene/look/look_names.h"
 
 namespace relook {
 namespace {

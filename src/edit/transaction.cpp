@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "scene/look_check.h"
-#include "scene/look_names.h"
+#include "scene/look/look_check.h"
+#include "scene/look/look_names.h"
 
 namespace relook {
 namespace {

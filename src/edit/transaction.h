@@ -12,8 +12,8 @@
 #include "edit/growth.h"
 #include "edit/journal.h"
 #include "edit/patch.h"
-#include "scene/look_schema.h"
-#include "scene/state.h"
+#include "scene/compile/state.h"
+#include "scene/look/look_schema.h"
 
 namespace relook {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/state.h"
+#include "scene/compile/state.h"
 
 namespace relook {
 

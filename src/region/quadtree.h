@@ -5,7 +5,7 @@
 #include <bitset>
 #include <cstdint>
 
-#include "trace/ray_tree.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 

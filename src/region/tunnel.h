@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "region/shaft.h"
-#include "trace/touch.h"
-#include "trace/tree_block.h"
+#include "trace/tree/touch.h"
+#include "trace/tree/tree_block.h"
 
 namespace relook {
 

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/hash.h"
-#include "scene/gltf_source.h"
-#include "scene/import_rules.h"
+#include "scene/gltf/gltf_source.h"
+#include "scene/gltf/import_rules.h"
 
 namespace relook {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "edit/journal.h"
-#include "engine/frame_place.h"
+#include "replay/frame_place.h"
 
 namespace relook {
 

@@ -8,8 +8,8 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "edit/journal_draft.h"
-#include "engine/frame_file.h"
-#include "engine/preview.h"
+#include "frame/frame_file.h"
+#include "frame/preview.h"
 #include "report/line_reader.h"
 
 namespace relook {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/error.h"
-#include "scene/gltf_source.h"
+#include "scene/gltf/gltf_source.h"
 
 namespace relook {
 namespace {

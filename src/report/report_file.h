@@ -10,7 +10,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
-#include "engine/report_entries.h"
+#include "report/report_entries.h"
 
 namespace relook {
 

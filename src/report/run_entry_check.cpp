@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "engine/display_view.h"
+#include "frame/display_view.h"
 
 namespace relook {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "base/json.h"
-#include "engine/frame_file.h"
+#include "frame/frame_file.h"
 
 namespace relook {
 

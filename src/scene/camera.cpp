@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/look_bounds.h"
-#include "scene/look_schema.h"
+#include "scene/look/look_bounds.h"
+#include "scene/look/look_schema.h"
 
 namespace relook {
 namespace {

@@ -1,5 +1,5 @@
-// A material as the look document says it, compiled: plain values, compared as a whole to find out what an edit changed.
-// glTF 2.0 section 5.19 and the KHR_materials_* extensions; extras.relook for what glTF lacks.
+// A material as the look document says it, compiled: plain values, compared as a whole to find out what an edit
+// changed. glTF 2.0 section 5.19 and the KHR_materials_* extensions; extras.relook for what glTF lacks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/math.h"
-#include "scene/texture.h"
+#include "scene/texture/texture.h"
 
 namespace relook {
 

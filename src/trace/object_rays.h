@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "trace/grow.h"
+#include "trace/tree/grow.h"
 
 namespace relook {
 

@@ -4,9 +4,9 @@
 #include <bit>
 #include <cmath>
 
-#include "scene/compile_transform.h"
-#include "scene/deformation.h"
-#include "scene/displacement.h"
+#include "scene/compile/compile_transform.h"
+#include "scene/compile/deformation.h"
+#include "scene/compile/displacement.h"
 #include "trace/rounding.h"
 
 namespace relook {

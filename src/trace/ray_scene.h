@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "scene/compile/tangents.h"
 #include "scene/scene.h"
 #include "scene/surface_optics.h"
-#include "scene/tangents.h"
 
 namespace relook {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/portable_math.h"
-#include "scene/procedural.h"
-#include "scene/texture_mapping.h"
+#include "scene/texture/procedural.h"
+#include "scene/texture/texture_mapping.h"
 #include "trace/rounding.h"
 
 namespace relook {

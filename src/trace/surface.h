@@ -3,7 +3,7 @@
 #pragma once
 #include "base/math.h"
 #include "trace/ray_scene.h"
-#include "trace/ray_tree.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "trace/ray_scene.h"
-#include "trace/ray_tree.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 

@@ -11,8 +11,8 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "engine/sampling.h"
-#include "trace/grow.h"
+#include "image/sampling.h"
+#include "trace/tree/grow.h"
 
 namespace relook {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "engine/image.h"
+#include "image/image.h"
 #include "scene/scene.h"
 
 namespace relook {

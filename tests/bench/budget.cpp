@@ -7,7 +7,7 @@
 
 #include "base/parallel.h"
 #include "bench_cache.h"
-#include "cache/access_log.h"
+#include "cache/residency/access_log.h"
 #include "edit/apply.h"
 
 namespace relook {

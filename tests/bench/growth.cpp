@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "engine/render.h"
+#include "image/render.h"
 
 namespace relook {
 namespace {

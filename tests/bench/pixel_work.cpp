@@ -5,9 +5,9 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "color/shade.h"
-#include "engine/sampling.h"
+#include "image/sampling.h"
 #include "setup.h"
-#include "trace/grow.h"
+#include "trace/tree/grow.h"
 
 namespace relook {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/image.h"
+#include "image/image.h"
 #include "scene/scene.h"
 
 namespace relook {

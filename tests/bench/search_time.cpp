@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "engine/path_tasks.h"
+#include "replay/path_tasks.h"
 
 namespace relook {
 namespace {

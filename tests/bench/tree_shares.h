@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "engine/image.h"
+#include "image/image.h"
 
 namespace relook {
 

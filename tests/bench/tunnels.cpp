@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "bench_cache.h"
-#include "engine/render.h"
+#include "image/render.h"
 
 namespace relook {
 namespace {

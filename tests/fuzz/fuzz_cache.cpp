@@ -4,9 +4,9 @@
 #include <cstdlib>
 
 #include "cache_bytes.h"
-#include "engine/cached_image.h"
-#include "engine/replay.h"
 #include "fuzz_targets.h"
+#include "image/cached_image.h"
+#include "replay/replay.h"
 #include "test_scenes.h"
 
 namespace relook {

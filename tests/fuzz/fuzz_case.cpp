@@ -8,10 +8,10 @@
 #include <exception>
 #include <fstream>
 
+#include "base/import_memory.h"
 #include "base/input_errors.h"
 #include "base/parallel.h"
-#include "scene/image_library.h"
-#include "scene/import_memory.h"
+#include "scene/texture/image_library.h"
 
 namespace relook {
 namespace {

@@ -7,7 +7,7 @@
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
 #include "libfuzzer_mutate.h"
-#include "scene/image.h"
+#include "scene/texture/image.h"
 
 namespace relook {
 namespace {

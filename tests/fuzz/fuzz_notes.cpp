@@ -2,10 +2,9 @@
 // taken up again does. The first line says which: "access", or "run"; the lines of a run after one of "progress" get
 // their hashes here.
 #include "base/hash.h"
-#include "cache/access_log.h"
-#include "engine/frame_file.h"
-#include "engine/preview.h"
-#include "engine/run_table.h"
+#include "cache/residency/access_log.h"
+#include "frame/frame_file.h"
+#include "frame/preview.h"
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
 #include "page/run_page.h"
@@ -14,6 +13,7 @@
 #include "report/report_file.h"
 #include "report/run_ledger.h"
 #include "report/run_source.h"
+#include "report/run_table.h"
 
 namespace relook {
 namespace {

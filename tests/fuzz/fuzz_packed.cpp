@@ -5,7 +5,7 @@
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
 #include "gltf_writer.h"
-#include "scene/import.h"
+#include "scene/gltf/import.h"
 
 namespace relook {
 namespace {

@@ -1,10 +1,10 @@
 // Choices of a scene, of structures and of edits: after each step the frame has the bits of a full render of the scene
 // compiled from scratch.
-#include "engine/render.h"
-#include "engine/replay.h"
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
+#include "image/render.h"
 #include "random_changes.h"
+#include "replay/replay.h"
 #include "test_scenes.h"
 
 namespace relook {

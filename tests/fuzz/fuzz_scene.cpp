@@ -3,15 +3,15 @@
 #include <random>
 
 #include "edit/journal_draft.h"
-#include "engine/render.h"
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
+#include "image/render.h"
 #include "libfuzzer_mutate.h"
 #include "mutate_json.h"
-#include "scene/animation.h"
-#include "scene/import.h"
-#include "scene/look.h"
-#include "scene/state.h"
+#include "scene/compile/state.h"
+#include "scene/gltf/animation.h"
+#include "scene/gltf/import.h"
+#include "scene/look/look.h"
 
 namespace relook {
 namespace {

@@ -251,7 +251,7 @@ def scene_files():
             yield json.dumps(dict(gltf.document, buffers=[{"byteLength": len(gltf.binary), "uri": uri}])).encode()
 
 
-# Edits of the scene of tests/look_fixture.h ---------------------------------------------------------------------------
+# Edits of the scene of tests/support/look_fixture.h ---------------------------------------------------------------------------
 EDITS = (
     [{"op": "replace", "path": "/materials/Gold/pbrMetallicRoughness/baseColorFactor", "value": [0.1, 0.2, 0.3, 1]}],
     [{"op": "test", "path": "/lights/Bulb/intensity", "value": 10},

@@ -1,0 +1,30 @@
+// Opening a cache for a verb: its faults become errors with their sentence and exit code.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "cache/cache.h"
+#include "image/cached_image.h"
+#include "report/report.h"
+
+namespace relook {
+
+/// 2 missing or not a cache; 3 it does not fit; 5 damaged; 6 not permitted to read it.
+[[nodiscard]] ExitCode exit_code(CacheFault fault);
+/// Throws Error unless the answer is `none`.
+void require_sound(const CacheAnswer& answer, const std::string& cache);
+/// `manifest`: of read_manifest().
+[[nodiscard]] CacheSizes cache_sizes(const Json& manifest);
+/// Refuses any damage.
+[[nodiscard]] CacheContent load_cache(const std::string& cache);
+
+/// With what was damaged or missing traced again; refuses only damage that cannot be made good.
+[[nodiscard]] CacheContent load_mended_cache(const std::string& cache);
+/// As a replay starts from it. `mends`, `residency`: see image/cached_image.h.
+[[nodiscard]] OpenedCache open_cache(const std::string& cache, bool mends, Residency* residency = nullptr);
+/// One sentence a file.
+[[nodiscard]] std::vector<std::string> sentences(const CacheLosses& losses);
+
+}  // namespace relook

@@ -1,0 +1,118 @@
+// The command line, parsed and checked: plain values, one struct for all verbs.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compare/frame_comparison.h"
+#include "edit/journal_draft.h"
+#include "image/image.h"
+#include "report/report.h"
+#include "scene/gltf/import_rules.h"
+
+namespace relook {
+
+enum class Verb : std::uint8_t {
+  render,
+  preprocess,
+  replay,
+  compare,
+  inspect,
+  check,
+  tune,
+  journal,
+  blame,
+  plan,
+  completions
+};
+enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };
+/// What a replay writes beside frames.
+enum class ReportKind : std::uint8_t { none, json, html };
+enum class JournalSource : std::uint8_t { diff, variants, animation, wedge };
+
+struct ViewArguments {
+  std::string camera;  // NAME | auto | EYE:TARGET:FOV; "": the scene's own
+  bool auto_lights = false;
+  std::string look_patch;  // RFC 6902 file, or ""
+  std::uint32_t width = 960, height = 540;
+  ViewOptions sampling;
+};
+
+/// What the command line says of structures; what it does not say is the cache's.
+struct NamedStructures {
+  std::optional<std::uint32_t> tunnels, tunnel_levels, groups, atoms;
+  std::optional<std::uint64_t> most_tunnels;
+  std::optional<double> color_trees_percent;
+};
+
+struct Arguments {
+  Verb verb = Verb::render;
+  std::vector<std::string> inputs;  // positional, in order
+  std::string output;
+  ViewArguments view;
+  StructureOptions structures;
+  NamedStructures named;                     // of `structures`
+  std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
+  std::size_t threads = 0;                   // 0: all
+  bool quiet = false, json = false;
+  ImportRules import;
+  bool overlays = false;  // images of the regions found
+  ProgressStyle progress = ProgressStyle::automatic;
+  bool log_json = false;
+  bool overwrite = false;  // replace another run or cache, or a single foreign file, that is in the way
+  std::string trace;       // file, or ""
+
+  std::string journal;                // render
+  std::optional<std::uint32_t> step;  // render
+  bool float_frames = false;          // render, replay
+  bool layers = false;                // render, replay: --aovs
+  double exposure = 0;                // render, replay, compare: stops, of previews
+  std::optional<double> verify_percent;
+  bool baseline = false;                  // replay
+  bool strict = false;                    // replay: no cache with damage, even such as can be made good
+  std::optional<StepRange> steps;         // replay
+  bool fresh = false;                     // replay: no frame of an earlier run is kept
+  ReportKind report = ReportKind::html;   // replay
+  std::string cache;                      // blame: folder, or "": where the run says; the same for `journal`
+  std::string spill;                      // replay: folder of the spill file; "": the run's
+  std::string access_log;                 // replay: file, or ""
+  bool print_look = false;                // inspect
+  std::vector<std::string> view_options;  // inspect: those of VIEW that were given, as "--camera"
+  std::string scene;                      // inspect, replay, check
+
+  Thresholds thresholds;                               // compare
+  DisplayWhite white;                                  // compare: --peak
+  bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP
+  std::string json_file;                               // compare, plan: --json=FILE, or ""
+  std::string html;                                    // compare: file, or ""
+  JournalSource journal_source = JournalSource::diff;  // journal; the rest: of an animation
+  SampleTimes sample_times;
+  std::string animation;  // name or number; "": the first
+};
+
+/// The arguments, or what to print instead (--help, --version). Throws UsageError.
+struct ParsedCommandLine {
+  std::optional<Arguments> arguments;
+  std::string text;
+};
+[[nodiscard]] ParsedCommandLine parse_command_line(int argc, const char* const* argv);
+
+/// What the command line does not say of structures becomes that of `others`.
+void take_structures(const StructureOptions& others, Arguments& arguments);
+
+/// The command line as completions need it.
+struct OptionHelp {
+  std::vector<std::string> names;  // "-o", "--output"
+  std::string help;                // one sentence
+  bool takes_value = false;
+  std::vector<std::string> choices;  // of the value, if there are few
+};
+struct VerbHelp {
+  std::string name, help;
+  std::vector<OptionHelp> options;
+};
+[[nodiscard]] std::vector<VerbHelp> command_line_help();
+
+}  // namespace relook

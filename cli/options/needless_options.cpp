@@ -1,0 +1,107 @@
+#include "options/needless_options.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "base/error.h"
+#include "options/named_files.h"
+
+namespace relook {
+namespace {
+
+const auto kAnyApp = [](const CLI::App*) { return true; };
+
+/// "journal wedge", "replay": of the subcommand that was given.
+const CLI::App& given_verb(const CLI::App& app, std::string& name) {
+  const CLI::App* verb = &app;
+  while (!verb->get_subcommands().empty()) {
+    verb = verb->get_subcommands().front();
+    name += (name.empty() ? "" : " ") + verb->get_name();
+  }
+  return *verb;
+}
+
+/// "--x", "-x", not "-", "--", "-1" and "-.5".
+bool is_option(const std::string& word) {
+  if (word.size() < 2 || word[0] != '-' || word == "--") return false;
+  return word[1] != '.' && (word[1] < '0' || word[1] > '9');
+}
+
+/// Without its value.
+std::string option_of(const std::string& word) {
+  return word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
+}
+
+std::vector<std::string> long_options(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::vector<std::string> verbs_with(const CLI::App& app, const std::string& option) {
+  std::vector<std::string> names;
+  for (const CLI::App* verb : app.get_subcommands(kAnyApp))
+    if (verb->get_option_no_throw(option) != nullptr) names.push_back(verb->get_name());
+  return names;
+}
+
+bool is_given(const CLI::App& verb, const std::string& option) {
+  const CLI::Option* const known = verb.get_option_no_throw(option);
+  return known != nullptr && known->count() > 0;
+}
+
+/// An option that changes nothing while `is_idle`, and why.
+struct Condition {
+  const char* option;
+  bool is_idle;
+  const char* reason;
+};
+
+std::vector<Condition> conditions_of(const Arguments& arguments) {
+  switch (arguments.verb) {
+    case Verb::render: {
+      const bool is_png = is_preview_name(arguments.output);
+      return {{"--float", is_png, "a PNG has no floats"}, {"--aovs", is_png, "a PNG has no layers"}};
+    }
+    case Verb::replay: {
+      return {{"--baseline", arguments.report == ReportKind::none, "it is for the report, which --report none omits"}};
+    }
+    case Verb::compare: {
+      constexpr const char* kExact = "not with --exact, which works out no PSNR, SSIM and FLIP";
+      const bool has_page = !arguments.html.empty() || !arguments.output.empty();
+      return {{"--exposure", !has_page, "it is for the pictures of the page; give --html or -o"},
+              {"--peak", arguments.exact_only, kExact},
+              {"--failflip", arguments.exact_only, kExact},
+              {"--warnflip", arguments.exact_only, kExact}};
+    }
+    default:
+      return {};
+  }
+}
+
+}  // namespace
+
+std::string refused_line_text(const CLI::App& app, std::span<const char* const> words, const std::string& otherwise) {
+  std::string name;
+  const CLI::App& verb = given_verb(app, name);
+  const auto found = std::ranges::find_if(words, [&](const std::string& word) {
+    return is_option(word) && verb.get_option_no_throw(option_of(word)) == nullptr;
+  });
+  if (name.empty() || found == words.end()) return otherwise;
+  const std::string option = option_of(*found);
+  std::string text = name + " takes no " + option;
+  const std::string near = nearest_name(option, long_options(verb));
+  if (!near.empty()) return text + "; did you mean \"" + near + "\"?";
+  std::string others;
+  for (const std::string& other : verbs_with(app, option)) others += (others.empty() ? "" : ", ") + other;
+  return others.empty() ? text + "; see relook " + name + " --help" : text + ", an option of " + others;
+}
+
+void require_effects(const CLI::App& verb, const Arguments& arguments) {
+  for (const Condition& condition : conditions_of(arguments))
+    if (condition.is_idle && is_given(verb, condition.option))
+      throw UsageError(verb.get_name() + " " + condition.option + ": " + condition.reason);
+}
+
+}  // namespace relook

@@ -1,0 +1,396 @@
+#include "run/journal_run.h"
+
+#include <cstdio>
+#include <new>
+#include <utility>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/system/memory.h"
+#include "compare/compare.h"
+#include "image/render.h"
+#include "input/load_cache.h"
+#include "replay/memory_needs.h"
+#include "report/places.h"
+
+namespace relook {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// "3_01" of a frame, "3" of a drag or wedge as a whole.
+std::string label_of(const StepReport& entry) {
+  return entry.is_whole_step ? std::to_string(entry.place.step) : step_label(entry.place);
+}
+
+/// What the entry of a frame that another command has made says of the frame itself.
+void take_over(const Json& kept, StepReport& entry) {
+  entry.has_overlays = kept.at("overlays").get<bool>();
+  entry.exposure = kept.at("exposure").get<double>();
+  if (kept.at("verify_percent").is_number()) entry.verify_percent = kept.at("verify_percent").get<double>();
+  if (const Json& verify = kept.at("verify"); verify.is_object())
+    entry.verify = VerifyResult{verify.at("pixels_compared").get<std::uint64_t>(),
+                                verify.at("pixels_different").get<std::uint64_t>()};
+  for (const auto& [name, stamp] : kept.at("files").items())
+    entry.files[name] = {stamp.at("hash").get<std::string>(), stamp.at("bytes").get<std::uint64_t>(),
+                         stamp.at("modified").get<std::int64_t>()};
+}
+
+RegionOptions region_options(const StructureOptions& structures) {
+  return {.groups = structures.groups,
+          .tunnels = structures.tunnels,
+          .ray_trees = structures.ray_trees_percent / 100,
+          .color_trees = structures.color_trees_percent / 100,
+          .atoms = structures.atoms,
+          .tunnel_levels = structures.tunnel_levels,
+          .most_tunnels = structures.most_tunnels};
+}
+
+/// The step and, one after the other, the phases that its report times.
+void trace_step(const StepReport& step, std::chrono::steady_clock::time_point start, TraceFile& trace) {
+  const Seconds& seconds = step.seconds;
+  const Counters& counters = step.counters;
+  trace.span(label_of(step) + " " + step.name, start, seconds.total,
+             {{"class", change_class_name(step.change)},
+              {"pixels_changed", counters.pixels_changed},
+              {"samples_affected", counters.samples_affected},
+              {"ray_tests", counters.ray_tests},
+              {"ray_updates", counters.ray_updates},
+              {"shadow_updates", counters.shadow_updates}});
+  for (const auto& [name, duration] : {std::pair{"classify", seconds.classify},
+                                       {"select", seconds.select},
+                                       {"test", seconds.test},
+                                       {"update", seconds.update},
+                                       {"evaluate", seconds.evaluate},
+                                       {"write", seconds.write}}) {
+    if (duration > 0) trace.span(name, start, duration);
+    start += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(duration));
+  }
+  const Resident& resident = step.resident;
+  trace.amounts("resident bytes", {{"ray_paths", resident.ray_paths},
+                                   {"ray_trees", resident.ray_trees},
+                                   {"sample_colors", resident.sample_colors},
+                                   {"color_trees", resident.color_trees},
+                                   {"groups", resident.groups},
+                                   {"tunnels", resident.tunnels}});
+}
+
+}  // namespace
+
+JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan,
+                       OpenedCache opened, std::unique_ptr<Residency> residency, const CacheFacts& cache,
+                       const PreviewStyle& previews)
+    : arguments_(arguments),
+      console_(console),
+      journal_(journal),
+      plan_(plan),
+      folder_(plan, journal,
+              {opened.image.frame.width, opened.image.frame.height,
+               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, previews, arguments.report}),
+      tunnels_(opened.tunnels),
+      replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
+                std::move(residency), std::move(opened.tunnels)) {
+  report_.scene = replayer_.state().document().file;
+  report_.scene_hash = cache.scene_hash;
+  report_.cache_folder = arguments.inputs[0];
+  report_.journal = journal.file;
+  report_.journal_hash = journal.hash;
+  report_.source = plan.source();
+  report_.places = {{"cache", place_json(plan.folder(), arguments.inputs[0])},
+                    {"journal", place_json(plan.folder(), journal.path)}};
+  report_.camera = replayer_.state().scene().camera;
+  report_.view = replayer_.image().view;
+  report_.structures = arguments.structures;
+  report_.float_frames = arguments.float_frames;
+  report_.layers = arguments.layers;
+  report_.exposure = previews.exposure;
+  report_.verify_percent = arguments.verify_percent;
+  report_.step_range = arguments.steps;
+  report_.threads = thread_count();
+  report_.cache = cache.sizes;
+  report_.cache_damage = cache.damage;
+  rebuilt_ = cache.rebuilt;
+}
+
+std::uint64_t JournalRun::run(std::size_t place, std::size_t runs) {
+  runs_before_ = static_cast<double>(place);
+  runs_ = static_cast<double>(runs);
+  try {
+    run_steps();
+    make_room_for_page();
+    folder_.write_report(report_, false, [this] { console_.check_interrupt(); });
+  } catch (const Interrupted&) {
+    leave_off();
+    throw;
+  }
+  if (!arguments_.access_log.empty()) write_file(arguments_.access_log, replayer_.residency().access_log());
+  print_summary();
+  return pixels_different_ + plan_.pixels_different();
+}
+
+void JournalRun::make_room_for_page() {
+  Residency& residency = replayer_.residency();
+  if (!residency.is_limited()) return;
+  static_cast<void>(residency.make_room(kPageBytes));
+  trim_allocator();
+}
+
+/// Reports the frames that are finished. The same command takes the run up again.
+void JournalRun::leave_off() {
+  const Uninterrupted to_the_end;
+  folder_.write_report(report_, true, [] {});
+}
+
+void JournalRun::run_steps() {
+  for (std::uint32_t step = 1; step < plan_.first_step(); ++step)
+    for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame, ++frame_number_)
+      pending_.add(edit_of(step, frame));
+  if (plan_.first_step() > 0) ++frame_number_;
+  if (arguments_.baseline && !arguments_.verify_percent) full_render();
+  for (std::uint32_t step = plan_.first_step(); step <= plan_.last_step(); ++step) run_step(step);
+  console_.part_done();
+}
+
+/// Requires: not of step 0, which is the frame before any edit.
+Edit JournalRun::edit_of(std::uint32_t step, std::size_t frame) const {
+  return frames_of(journal_.steps[step - 1])[frame];
+}
+
+void JournalRun::run_step(std::uint32_t step) {
+  for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame, ++frames_done_, ++frame_number_) {
+    if (plan_.keeps(step, frame))
+      pass_kept(step, frame);
+    else
+      run_frame(step, frame);
+  }
+  if (step_so_far_ || (step > 0 && new_entry(step, 0).place.number && !plan_.keeps_whole_step(step)))
+    end_numbered(step);
+}
+
+StepReport JournalRun::new_entry(std::uint32_t step, std::size_t frame) const {
+  StepReport entry;
+  entry.edits_hash = plan_.hashes().at(step, frame);
+  entry.source_hash = plan_.source_hash();
+  entry.verify_percent = arguments_.verify_percent;
+  entry.exposure = report_.exposure;
+  if (step == 0) {
+    entry.name = "base";
+    return entry;
+  }
+  const JournalStep& written = journal_.steps[step - 1];
+  entry.place = place_of(written, step, frame);
+  entry.is_drag = !written.drag.empty();
+  entry.name = written.name;
+  return entry;
+}
+
+/// A frame that is there already: its edit is made with the next ones, or at once while a selection is being dragged.
+void JournalRun::pass_kept(std::uint32_t step, std::size_t frame) {
+  const StepReport entry = new_entry(step, frame);
+  console_.log_line(label_of(entry) + " \"" + printable(entry.name) + "\": kept");
+  if (step == 0) return;
+  Edit edit = edit_of(step, frame);
+  follows_last_ = false;
+  if (is_dragging_)
+    (void)replayer_.drag(edit, journal_.file, journal_.path.parent_path());
+  else
+    pending_.add(std::move(edit));
+}
+
+/// Goes to where the scene is before the next frame.
+void JournalRun::catch_up() {
+  if (pending_.empty()) return;
+  const auto start = std::chrono::steady_clock::now();
+  const TraceScope span = console_.span("edits before");
+  for (const Edit& edit : pending_.take()) {
+    console_.check_interrupt();
+    (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
+  }
+  follows_last_ = false;
+  report_.resume_seconds += seconds_since(start);
+}
+
+StepResult JournalRun::edited(const StepReport& entry, std::size_t frame) {
+  StepResult result;
+  if (entry.place.step == 0) {
+    const Frame& base = replayer_.image().frame;
+    result.counters.samples_total = std::uint64_t{base.width} * base.height * report_.view.samples;
+    result.counters.rebuilt = rebuilt_;
+    result.classification.change = ChangeClass::base;
+    return result;
+  }
+  const Edit edit = edit_of(entry.place.step, frame);
+  const std::filesystem::path folder = journal_.path.parent_path();
+  is_dragging_ = entry.is_drag;
+  return entry.is_drag ? replayer_.drag(edit, journal_.file, folder) : replayer_.step(edit, journal_.file, folder);
+}
+
+void JournalRun::run_frame(std::uint32_t step, std::size_t frame) {
+  StepReport entry = new_entry(step, frame);
+  console_.check_interrupt();
+  show_part(entry);
+  StepResult result;
+  auto start = std::chrono::steady_clock::now();
+  try {
+    catch_up();
+    start = std::chrono::steady_clock::now();
+    result = edited(entry, frame);
+  } catch (const ResourceError&) {  // with more memory the run goes on from here
+    leave_off();
+    throw;
+  } catch (const std::bad_alloc&) {
+    leave_off();
+    throw;
+  }
+  entry.change = result.classification.change;
+  entry.reasons = result.classification.reasons;
+  entry.counters = result.counters;
+  entry.seconds = result.seconds;
+  finish(std::move(entry), result, start);
+}
+
+/// The entry of a drag or wedge as a whole, which names the last of its frames; a dragged selection goes back into the
+/// ray trees.
+void JournalRun::end_numbered(std::uint32_t step) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t last = plan_.frames_in(step) - 1;
+  const bool is_last_kept = plan_.keeps(step, last);
+  StepReport entry = step_so_far_ && !is_last_kept ? *step_so_far_ : new_entry(step, last);
+  step_so_far_.reset();
+  if (is_last_kept) take_over(plan_.kept_entry(step, last), entry);
+  entry.is_whole_step = true;
+  entry.counters = Counters();
+  entry.seconds = Seconds();
+  entry.reasons = {entry.is_drag ? "the selection is released where the last entry put it"
+                                 : "the last value of the wedge stays"};
+  if (entry.is_drag) entry.counters.samples_total = plan_.samples();  // also where all frames were there
+  if (is_dragging_) {
+    const StepResult result = replayer_.release();
+    is_dragging_ = false;
+    entry.counters = result.counters;
+    entry.seconds = result.seconds;
+  }
+  // The class is that of all its frames, those of earlier commands included.
+  entry.change = ChangeClass::color;
+  for (std::size_t frame = 0; frame <= last; ++frame) {
+    if (!plan_.keeps(step, frame)) continue;
+    entry.change =
+        combined(entry.change, change_class_of(plan_.kept_entry(step, frame).at("class").get<std::string>()));
+  }
+  entry.change = combined(entry.change, step_class_);
+  step_class_ = ChangeClass::color;
+  entry.frame = frame_name(entry.place);
+  entry.preview = preview_name(entry.place);
+  entry.resident = replayer_.resident();
+  entry.peak_rss_bytes = peak_rss_bytes();
+  entry.seconds.total = seconds_since(start);
+  trace_step(entry, start, console_.trace());
+  folder_.note(std::move(entry));
+}
+
+/// The share of the run that a frame is, and what it is.
+void JournalRun::show_part(const StepReport& entry) {
+  const auto done = static_cast<double>(frames_done_), all = static_cast<double>(plan_.frames());
+  const auto share = [&](double frames) { return (runs_before_ + frames / all) / runs_; };
+  console_.part(share(done), share(done + 1), "step " + label_of(entry) + " " + entry.name);
+}
+
+/// Damage of tunnels comes to light when they are first used.
+void JournalRun::note_tunnel_damage() {
+  if (!tunnels_) return;
+  std::vector<std::string> damage = sentences({tunnels_->take_faults(), {}, {}});
+  report_.cache_damage.insert(report_.cache_damage.end(), damage.begin(), damage.end());
+  for (std::string& sentence : damage) sentence = arguments_.inputs[0] + ": " + sentence + "; built again";
+  console_.warn(damage);
+}
+
+void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {
+  note_tunnel_damage();
+  FrameMeta meta;
+  meta.scene_hash = report_.scene_hash;
+  meta.edits_hash = entry.edits_hash;
+  const bool is_numbered = entry.place.number.has_value();
+  folder_.write_frame(entry, replayer_.image(), {result.changed_pixels, follows_last_}, std::move(meta),
+                      arguments_.layers ? &replayer_.state().scene() : nullptr);
+  follows_last_ = true;
+  warn_of_clipping(entry);
+  if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
+  entry.seconds.total = seconds_since(start);
+  entry.resident = replayer_.resident();
+  entry.peak_rss_bytes = peak_rss_bytes();
+  if (arguments_.verify_percent) verify(entry);
+  trace_step(entry, start, console_.trace());
+  print(entry);
+  if (is_numbered) {
+    step_class_ = combined(step_class_, entry.change);
+    step_so_far_ = entry;
+  }
+  folder_.note(std::move(entry));
+}
+
+Frame JournalRun::full_render() {
+  Residency& residency = replayer_.residency();
+  const Residency::Aside aside = residency.begin_aside();
+  const SceneState& state = replayer_.state();
+  const Scene scene = compiled_scene(state.document(), report_.camera, *state.pyramids());
+  RenderStats stats;
+  const TraceScope span = console_.span("full render");
+  const auto progress = [&residency, shown = console_.stage("full render")](double share) {
+    residency.measure_aside();
+    shown(share);
+  };
+  const MemoryMonitor monitor = [&](std::int64_t bytes) { residency.claim(bytes); };
+  Frame frame = render(scene, report_.view, stats, progress, residency.is_limited() ? monitor : MemoryMonitor());
+  console_.end_stage();
+  if (!report_.full_render_seconds) report_.full_render_seconds = stats.build_seconds + stats.render_seconds;
+  return frame;
+}
+
+void JournalRun::verify(StepReport& entry) {
+  const FrameDifference difference =
+      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent, frame_number_);
+  entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
+  pixels_compared_ += difference.pixels_compared;
+  pixels_different_ += difference.pixels_different;
+}
+
+void JournalRun::print(const StepReport& entry) {
+  const Counters& counters = entry.counters;
+  std::string line = label_of(entry) + " " + std::string(change_class_name(entry.change)) + " \"" +
+                     printable(entry.name) + "\": " + std::to_string(counters.pixels_changed) + " pixels changed, " +
+                     std::to_string(counters.ray_updates) + " ray updates, " + std::to_string(counters.shadow_updates) +
+                     " shadow updates, " + std::to_string(entry.seconds.total) + " s";
+  if (entry.verify)
+    line += ", verified: " + std::to_string(entry.verify->pixels_different) + " of " +
+            std::to_string(entry.verify->pixels_compared) + " pixels differ";
+  console_.log_line(line);
+}
+
+/// Of the first frames; print_summary() counts all.
+void JournalRun::warn_of_clipping(const StepReport& entry) {
+  constexpr std::size_t kMostSaid = 3;
+  if (folder_.clipped_pixels() == 0 || ++clipped_frames_ > kMostSaid) return;
+  console_.warn({entry.frame + ": " + clipping_sentence(folder_.clipped_pixels())});
+}
+
+void JournalRun::print_summary() {
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.3g s", seconds_since(start_));
+  std::string line = plan_.folder().string() + ": " + std::to_string(plan_.frames()) + " frames";
+  if (plan_.kept_frames() > 0) line += " (" + std::to_string(plan_.kept_frames()) + " kept)";
+  line += std::string(" in ") + seconds;
+  if (arguments_.verify_percent)
+    line += ", verified: " + std::to_string(pixels_different_) + " of " + std::to_string(pixels_compared_) +
+            " pixels differ";
+  if (plan_.pixels_different() > 0)
+    line += ", in kept frames " + std::to_string(plan_.pixels_different()) + " pixels differ from full renders";
+  if (clipped_frames_ > 0) line += ", " + std::to_string(clipped_frames_) + " with pixels beyond half's range";
+  if (arguments_.report != ReportKind::none)
+    line +=
+        "; see " + (plan_.folder() / (arguments_.report == ReportKind::html ? "report.html" : kReportName)).string();
+  console_.line(printable(line));
+}
+
+}  // namespace relook

@@ -1,0 +1,93 @@
+// One journal replayed into one run folder: its frames, its report and its notes, from the start or from where an
+// earlier run ended.
+#pragma once
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "color/expression/parameter_set.h"
+#include "edit/journal.h"
+#include "image/cached_image.h"
+#include "options/arguments.h"
+#include "replay/replay.h"
+#include "report/report.h"
+#include "run/run_folder.h"
+#include "terminal/console.h"
+
+namespace relook {
+
+/// What a report says of the cache.
+struct CacheFacts {
+  std::string scene_hash;
+  CacheSizes sizes;
+  std::vector<std::string> damage;
+  Moves rebuilt;  // what was damaged
+};
+
+/// Replays one journal into one run folder.
+class JournalRun {
+ public:
+  /// `residency`: null, or with which the cache was opened.
+  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan, OpenedCache opened,
+             std::unique_ptr<Residency> residency, const CacheFacts& cache,
+             const PreviewStyle& previews);
+
+  /// Builds their colour trees; no others will be kept.
+  void choose_parameters(const std::vector<ParameterSet>& sets) {
+    const TraceScope span = console_.span("colour trees of --params");
+    replayer_.choose_parameters(sets);
+  }
+  /// `place`: of this run among `runs`, from 0. Writes the report at the end of the run, or when a signal or want of
+  /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different, in frames
+  /// that were kept, too.
+  std::uint64_t run(std::size_t place, std::size_t runs);
+  /// After run().
+  [[nodiscard]] Replayer take_replayer() { return std::move(replayer_); }
+
+ private:
+  void run_steps();
+  void make_room_for_page();
+  void leave_off();
+  void catch_up();
+  void run_step(std::uint32_t step);
+  [[nodiscard]] StepResult edited(const StepReport& entry, std::size_t frame);
+  void run_frame(std::uint32_t step, std::size_t frame);
+  void pass_kept(std::uint32_t step, std::size_t frame);
+  void end_numbered(std::uint32_t step);
+  [[nodiscard]] StepReport new_entry(std::uint32_t step, std::size_t frame) const;
+  [[nodiscard]] Edit edit_of(std::uint32_t step, std::size_t frame) const;
+  void show_part(const StepReport& entry);
+  void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
+  void verify(StepReport& entry);
+  Frame full_render();
+  void print(const StepReport& entry);
+  void print_summary();
+  void note_tunnel_damage();
+  void warn_of_clipping(const StepReport& entry);
+
+  const Arguments& arguments_;
+  Console& console_;
+  const Journal& journal_;
+  RunPlan& plan_;
+  RunFolder folder_;
+  std::shared_ptr<StoredTunnels> tunnels_;  // of the cache; null: it has none
+  Replayer replayer_;
+  RunReport report_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::uint64_t pixels_different_ = 0, pixels_compared_ = 0;
+  Moves rebuilt_;                          // as the cache was read
+  MergedEdits pending_;                    // of frames that are there already: to be made before the next that is not
+  bool is_dragging_ = false;               // the selection of the present step is out of the ray trees
+  bool follows_last_ = false;              // the frame to come follows the last one written: no edit lies between
+  std::size_t frames_done_ = 0;            // of those asked for
+  std::size_t frame_number_ = 0;           // of the journal, for the tiles that --verify takes
+  std::optional<StepReport> step_so_far_;  // the last frame of the present drag or wedge, if it was made here
+  ChangeClass step_class_ = ChangeClass::color;  // of its frames so far
+  std::size_t clipped_frames_ = 0;               // that half cannot hold
+  double runs_before_ = 0, runs_ = 1;            // of the command, for its progress
+};
+
+}  // namespace relook

@@ -1,0 +1,32 @@
+#include "base/system/memory.h"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+
+namespace relook {
+
+std::uint64_t resident_set_bytes() {
+  const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  std::array<char, 128> text{};
+  const ssize_t got = ::read(file, text.data(), text.size() - 1);
+  ::close(file);
+  if (got <= 0) return 0;
+  char* rest = nullptr;
+  std::strtoull(text.data(), &rest, 10);  // the whole address space
+  return std::strtoull(rest, nullptr, 10) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void trim_allocator() { malloc_trim(0); }
+
+void give_back_large_blocks() {
+  constexpr int kLarge = 128 << 10, kMostBlocks = 32 << 10;  // a process may map 65,530 by default
+  mallopt(M_MMAP_THRESHOLD, kLarge);
+  mallopt(M_MMAP_MAX, kMostBlocks);
+}
+
+}  // namespace relook

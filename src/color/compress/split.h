@@ -1,0 +1,34 @@
+// Partial evaluation of colour programs (paper 3.3): what a set of changing leaves cannot alter becomes stored columns,
+// one value a sample; a residual program keeps the chain from these leaves to the result. No operation is
+// re-associated, so the residual yields the program's bits.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "color/expression/program.h"
+
+namespace relook {
+
+/// Leaves whose values may differ from one evaluation to the next.
+struct ChangingLeaves {
+  FieldMask fields = 0;         // of the node's material, without kMappingMask: places of lookups cannot change
+  std::vector<LightId> lights;  // their colour parameters
+  bool ambient = false, environment = false;
+  std::uint8_t children = 0;  // bit per Branch: colours of child rays
+  std::uint64_t tints = 0;    // tint_bit() of lights whose filters' colours change
+  auto operator<=>(const ChangingLeaves&) const = default;
+};
+/// A bit for a place in the light order; all from the 64th on share the last.
+[[nodiscard]] constexpr std::uint64_t tint_bit(std::uint32_t order) {
+  return std::uint64_t{1} << (order < 63 ? order : 63);
+}
+
+struct SplitProgram {
+  Kernel constants;    // outputs: the columns
+  Kernel residual;     // reads the columns (Op::column); outputs: R, G, B, A
+  Dependencies baked;  // parameters that the columns were evaluated with
+};
+
+[[nodiscard]] SplitProgram split(const ColorProgram& program, const ChangingLeaves& leaves);
+
+}  // namespace relook

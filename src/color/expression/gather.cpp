@@ -1,0 +1,85 @@
+#include "color/expression/gather.h"
+
+#include "trace/surface.h"
+
+namespace relook {
+namespace {
+
+/// Calls read(lane, node or filter) for every lane.
+template <class Read>
+void for_each_lane(const Gathering& from, const Read& read) {
+  const std::span<const std::uint32_t> indices = from.indices;
+  if (from.are_filters)
+    for (std::size_t lane = 0; lane < indices.size(); ++lane) read(lane, from.block.filters[indices[lane]]);
+  else
+    for (std::size_t lane = 0; lane < indices.size(); ++lane) read(lane, from.block.nodes[indices[lane]]);
+}
+
+/// Fills a column from nodes, which alone have this input.
+template <class Read>
+void from_nodes(const Gathering& from, float* out, const Read& read) {
+  for (std::size_t lane = 0; lane < from.indices.size(); ++lane) out[lane] = read(from.block.nodes[from.indices[lane]]);
+}
+
+}  // namespace
+
+void gather(std::uint32_t payload, const Gathering& from, const BlockColors& colors, float* out) {
+  const int axis = static_cast<int>(input_axis(payload));
+  const std::uint32_t which = input_which(payload);
+  switch (input_of(payload)) {
+    case Input::position:
+      return for_each_lane(from, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.position[axis]; });
+    case Input::normal:
+      return for_each_lane(from, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.shading[axis]; });
+    case Input::geometric:
+      return for_each_lane(from, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.geometric[axis]; });
+    case Input::footprint:
+      return for_each_lane(from, [&](std::size_t lane, const auto& hit) { out[lane] = hit.footprint; });
+    case Input::vertex_color:
+      return for_each_lane(from, [&](std::size_t lane, const auto& hit) {
+        out[lane] = vertex_color(*from.scene.object(hit.object).mesh, hit.hit)[axis];
+      });
+    case Input::length_inside:
+      for (std::size_t lane = 0; lane < from.indices.size(); ++lane)
+        out[lane] = from.block.filters[from.indices[lane]].length_inside;
+      return;
+    case Input::view:
+      return from_nodes(from, out, [&](const RayNode& node) { return -node.ray.direction[axis]; });
+    case Input::child:
+      return from_nodes(from, out, [&](const RayNode& node) { return colors.nodes[node.child[which]][axis]; });
+    case Input::child_length:
+      return from_nodes(from, out, [&](const RayNode& node) {
+        const RayNode& child = from.block.nodes[node.child[static_cast<std::size_t>(axis)]];
+        return child.length - child.ray.travelled;
+      });
+    case Input::tint:
+      return from_nodes(from, out, [&](const RayNode& node) {
+        return tint(from.block.lights[node.first_light + which], axis, colors);
+      });
+    case Input::reached:
+      return from_nodes(from, out, [&](const RayNode& node) {
+        const ShadowState state = from.block.lights[node.first_light + which].state;
+        return state == ShadowState::open || state == ShadowState::filtered ? 1.0F : 0.0F;
+      });
+  }
+}
+
+void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out) {
+  for_each_lane(from, [&](std::size_t lane, const auto& hit) {
+    const TextureCoordinates at = texture_coordinates(from.scene.object(hit.object), hit.hit, hit.point.local, slot);
+    for (int axis = 0; axis < 3; ++axis) out[axis].lanes[lane] = at.position[axis];
+    out[3].lanes[lane] = at.area_ratio;
+  });
+}
+
+void gather_tangent_frames(const TextureSlot& slot, const Gathering& from, Column* out) {
+  for_each_lane(from, [&](std::size_t lane, const auto& hit) {
+    const TangentFrame frame = tangent_frame(from.scene.object(hit.object), hit.hit, hit.point, slot);
+    for (int axis = 0; axis < 3; ++axis) {
+      out[axis].lanes[lane] = frame.tangent[axis];
+      out[axis + 3].lanes[lane] = frame.bitangent[axis];
+    }
+  });
+}
+
+}  // namespace relook

@@ -1,0 +1,24 @@
+// Per-sample constants of colour programs: columns gathered from the nodes of a block.
+#pragma once
+#include <span>
+
+#include "color/expression/evaluate.h"
+
+namespace relook {
+
+/// Some nodes or filters of a block.
+struct Gathering {
+  const RayScene& scene;
+  const TreeBlock& block;
+  bool are_filters = false;
+  std::span<const std::uint32_t> indices;  // at most kLanes
+};
+
+/// Fills out[lane] with an input.
+void gather(std::uint32_t payload, const Gathering& from, const BlockColors& colors, float* out);
+/// Op::coordinates: four columns.
+void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out);
+/// Op::tangent_frame: six columns.
+void gather_tangent_frames(const TextureSlot& slot, const Gathering& from, Column* out);
+
+}  // namespace relook

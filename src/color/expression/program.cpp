@@ -1,0 +1,156 @@
+#include "color/expression/program.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/error.h"
+#include "base/portable_math.h"
+
+namespace relook {
+namespace {
+
+float folded(Op op, float a, float b) {
+  switch (op) {
+    case Op::add:
+      return a + b;
+    case Op::subtract:
+      return a - b;
+    case Op::multiply:
+      return a * b;
+    case Op::divide:
+      return a / b;
+    case Op::min:
+      return a < b ? a : b;
+    case Op::max:
+      return a > b ? a : b;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+MaterialStructure structure_of(const Material& material) {
+  const auto is_positive = [](const Color& c) { return c.x > 0 || c.y > 0 || c.z > 0; };
+  MaterialStructure structure{material.model,
+                              material.alpha_mode,
+                              material.transmission > 0,
+                              material.thickness > 0,
+                              is_positive(material.sheen_color),
+                              material.clearcoat > 0,
+                              material.anisotropy > 0,
+                              material.iridescence > 0,
+                              material.dispersion > 0,
+                              0,
+                              0};
+  for (std::size_t slot = 0; slot < kSlotCount; ++slot) {
+    const TextureKind kind = material.slots[slot].kind;
+    if (kind != TextureKind::none) structure.textures |= 1U << slot;
+    if (kind == TextureKind::procedural) structure.procedurals |= 1U << slot;
+  }
+  return structure;
+}
+
+Value ExpressionBuilder::emit(const Instruction& instruction) {
+  const auto [it, is_new] = known_.try_emplace(instruction, static_cast<Value>(code_.size()));
+  if (is_new) code_.push_back(instruction);
+  return it->second;
+}
+
+const MaterialStructure& ExpressionBuilder::note(FieldMask mask) {
+  dependencies_.material |= mask;
+  return structure_;
+}
+
+bool ExpressionBuilder::is_constant(Value value, float* number) const {
+  if (code_[value].op != Op::constant) return false;
+  *number = std::bit_cast<float>(code_[value].payload);
+  return true;
+}
+
+Value ExpressionBuilder::constant(float value) { return emit({Op::constant, std::bit_cast<std::uint32_t>(value), {}}); }
+
+Value ExpressionBuilder::field(Field field, unsigned component) {
+  static_cast<void>(note(mask_of(field)));
+  return emit({Op::material_field, static_cast<std::uint32_t>(field) | component << 8, {}});
+}
+
+Value ExpressionBuilder::light(LightId light, LightField field) {
+  auto& lights = dependencies_.lights;
+  if (lights.empty() || lights.back() != light) lights.push_back(light);  // a model takes one lamp after the other
+  return emit({Op::light_field, static_cast<std::uint32_t>(field) | light.index() << 8, {}});
+}
+
+Value ExpressionBuilder::ambient(unsigned component) {
+  dependencies_.ambient = true;
+  return emit({Op::ambient, component, {}});
+}
+
+Value ExpressionBuilder::environment(unsigned component) {
+  dependencies_.environment = true;
+  return emit({Op::environment, component, {}});
+}
+
+Value ExpressionBuilder::input(Input input, unsigned detail) {
+  return emit({Op::input, static_cast<std::uint32_t>(input) | detail << 8, {}});
+}
+
+Value ExpressionBuilder::apply(Op op, Value a, Value b, Value c) {
+  float x = 0, y = 0;
+  if (operand_count(op) == 2 && op != Op::sheen_albedo && is_constant(a, &x) && is_constant(b, &y))
+    return constant(folded(op, x, y));
+  return emit({op, 0, {a, b, c, 0, 0}});
+}
+
+Instruction ExpressionBuilder::lookup_at(Op op, Slot slot) {
+  static_cast<void>(note(mask_of(slot) | kMappingMask));
+  const Value at = emit({Op::coordinates, static_cast<std::uint32_t>(slot), {}});
+  Instruction lookup{op, static_cast<std::uint32_t>(slot), {}};
+  for (unsigned k = 0; k < 4; ++k) lookup.operands[k] = channel(at, k);
+  return lookup;
+}
+
+Value ExpressionBuilder::procedural_channel(Slot slot, unsigned channel) {
+  if (channel == 3) return constant(1);
+  static_cast<void>(note(color_mask_of(slot)));
+  const auto color = [&](unsigned component) {
+    return emit({Op::slot_color, static_cast<std::uint32_t>(slot) | component << 8, {}});
+  };
+  const Value weight = emit(lookup_at(Op::procedural_weight, slot));
+  const Value rest = apply(Op::subtract, constant(1), weight);
+  return apply(Op::add, apply(Op::multiply, color(channel), rest), apply(Op::multiply, color(channel + 3), weight));
+}
+
+Value ExpressionBuilder::texel(Slot slot, unsigned channel) {
+  if ((structure_.procedurals >> static_cast<unsigned>(slot) & 1U) != 0) return procedural_channel(slot, channel);
+  Instruction lookup = lookup_at(Op::texture, slot);
+  lookup.operands[4] = input(Input::footprint);
+  return this->channel(emit(lookup), channel);
+}
+
+Value ExpressionBuilder::tangent_frame(Slot slot) {
+  static_cast<void>(note(mask_of(slot) | kMappingMask));
+  return emit({Op::tangent_frame, static_cast<std::uint32_t>(slot), {}});
+}
+
+Value ExpressionBuilder::environment_map(Value x, Value y, Value z) {
+  dependencies_.environment = true;
+  return emit({Op::environment_map, 0, {x, y, z, 0, 0}});
+}
+
+Value ExpressionBuilder::channel(Value lookup, unsigned channel) {
+  require(is_lookup(code_[lookup].op), "channel of a lookup");
+  return channel == 0 ? lookup : emit({Op::channel, channel, {lookup, 0, 0, 0, 0}});
+}
+
+ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result) {
+  ColorProgram program;
+  program.code = builder.code();
+  program.result = result;
+  program.kernel = make_kernel(program.code, {result.begin(), result.end()});
+  program.dependencies = builder.dependencies();
+  return program;
+}
+
+}  // namespace relook

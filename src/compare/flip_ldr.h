@@ -1,0 +1,35 @@
+// LDR-FLIP: how different two images look when an observer flips between them. P. Andersson, J. Nilsson,
+// T. Akenine-Moeller, M. Oskarsson, K. Astroem, M. Fairchild: "FLIP: A Difference Evaluator for Alternating Images",
+// HPG 2020. Filters as seen on a 0.7 m wide display of 3840 pixels from 0.7 m: 67 pixels a degree.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "compare/plane.h"
+
+namespace relook {
+
+/// What the filters see beyond a pixel, in pixels on each side.
+inline constexpr std::size_t kFlipRadius = 10;
+
+using FlipKernel = std::array<float, 2 * kFlipRadius + 1>;
+
+/// The observer's filters, separated: contrast sensitivity (4.1 of the paper) and features (4.3).
+struct FlipFilters {
+  FlipKernel achromatic{}, red_green{}, blue_yellow_wide{}, blue_yellow_narrow{};  // Gaussians
+  float wide_share = 0, narrow_share = 0;                                          // of the two blue-yellow ones
+  FlipKernel gaussian{}, edge{}, point{};
+};
+[[nodiscard]] FlipFilters flip_filters();
+
+/// Linear Rec.709 in [0, 1]: planes with kFlipRadius pixels beyond those asked for on each side.
+struct RgbPlanes {
+  Plane r, g, b;
+};
+
+/// The error in [0, 1] of each pixel asked for, row by row. Requires planes of one size.
+[[nodiscard]] std::vector<float> ldr_flip(const RgbPlanes& reference, const RgbPlanes& test,
+                                          const FlipFilters& filters);
+
+}  // namespace relook

@@ -1,0 +1,21 @@
+// Frames with layers for compositing (--aovs). The layers are made from the scene as it is now, by a pass of their own
+// over all of the image, whoever asks: so a replay's file is that of a full render, byte for byte.
+#pragma once
+#include "frame/changed_pixels.h"
+#include "frame/frame_file.h"
+#include "image/render.h"
+
+namespace relook {
+
+struct LayeredFrame {
+  const Scene& scene;
+  const ViewOptions& view;
+  const Frame& frame;            // of that scene
+  const ChangedPixels& changed;  // since the frame before
+  PixelFormat format;            // of R, G, B and A; layers are float32
+};
+
+/// The file: an OpenEXR frame as encode_exr() writes it, with the channels of FrameLayers.
+[[nodiscard]] Bytes encode_layered_exr(const LayeredFrame& frame, const FrameMeta& meta, const Progress& progress = {});
+
+}  // namespace relook

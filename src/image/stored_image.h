@@ -1,0 +1,115 @@
+// What is kept of an image through a series of edits: paths, trees, colours, frame, and what helps to find things in
+// them. Brought up to date with what the passes over its tiles have found.
+#pragma once
+#include <atomic>
+#include <span>
+#include <vector>
+
+#include "cache/residency/residency.h"
+#include "frame/changed_pixels.h"
+#include "image/counters.h"
+#include "image/image.h"
+#include "image/image_pieces.h"
+#include "image/path_classes.h"
+#include "image/path_index.h"
+#include "image/regions.h"
+#include "replay/path_tasks.h"
+#include "replay/tile_update.h"
+
+namespace relook {
+
+/// Colours of single samples of a tile in place of the stored ones: those of an intermediate frame of a drag.
+struct ShownSamples {
+  std::vector<std::uint32_t> samples;  // increasing
+  std::vector<Rgba> colors;
+};
+
+class StoredImage {
+ public:
+  /// `atoms`: see atoms_of(); empty without atoms.
+  StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms, const RegionOptions& options,
+              Residency& residency);
+
+  [[nodiscard]] const Image& image() const { return image_; }
+  [[nodiscard]] const std::vector<LightId>& lights() const { return lights_; }  // light order of the paths
+  [[nodiscard]] const PathIndex& index() const { return index_; }
+  [[nodiscard]] const PathClasses& classes() const { return classes_; }
+  [[nodiscard]] const ImageRegions& regions() const { return regions_; }
+  [[nodiscard]] Residency& residency() { return residency_; }
+  /// The image side of a search for paths. `rays`: after the change; outlives it, as does this.
+  [[nodiscard]] PathSearch search(const RayScene& rays) const {
+    return {rays, image_.paths, index_, lights_, image_.view.shadow_bits, classes_};
+  }
+  [[nodiscard]] std::uint64_t segments() const { return segments_; }
+  [[nodiscard]] std::uint64_t segments(std::size_t tile) const { return tile_segments_[tile]; }
+  [[nodiscard]] std::uint64_t samples() const { return samples_; }
+  /// Colour trees are elsewhere.
+  [[nodiscard]] Resident resident() const;
+
+  /// For objects that have been added. `atoms`: of all objects; the known ones keep theirs for now.
+  void extend_atoms(const std::vector<ObjectId>& atoms) {
+    atoms_.insert(atoms_.end(), atoms.begin() + std::ssize(atoms_), atoms.end());
+  }
+  /// After a change, perhaps of the node hierarchy. `scene`: in which the trees hold.
+  void set_atoms(std::vector<ObjectId> atoms, const GrowScene& scene);
+  /// Tunnels of the image as it is now. Requires: the residency is watched.
+  void offer_tunnels(std::shared_ptr<StoredTunnels> stored) { regions_.offer(std::move(stored), image_.trees.size()); }
+  /// Requires: the trees hold in `scene`.
+  void build_tunnels(const GrowScene& scene);
+
+  /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees. The others
+  /// stay without.
+  void forget_hits(double share);
+  /// A tile is about to be worked on at some leaves. If its hits are missing and have been, or will be, found again
+  /// sample by sample as often as the tile has samples, all are found now, and kept; not where the change reaches the
+  /// trees themselves. Tiles may be done at the same time. Requires: its ray trees are leased.
+  GrowCounters bring_back_hits(std::size_t tile, const Leaves& leaves, const PathTasks& tasks, const GrowScene& scene);
+  /// Takes over the hits and colours of an update, which has none any more. Tiles may be done at the same time; the
+  /// tile's paths are the old ones until keep_paths().
+  void keep_hits(TileUpdate& update);
+  /// Takes over the paths of updates whose hits have been kept, and keeps the regions equal to what would be built from
+  /// the trees. `scene`: in which they hold. `lights_changed`: all samples have been packed anew, since the form of
+  /// paths follows the light order.
+  void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
+  /// Of tiles that missed theirs and have no changed trees, which keep_paths() sees to. `scene`: in which trees hold.
+  void bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene);
+  /// Tunnels that were worked out again since the last call: they had left memory, or paths were numbered afresh.
+  [[nodiscard]] Moves take_rebuilt();
+  /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
+  void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
+  /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
+  void refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,
+                      TileMask& changed);
+
+ private:
+  [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }
+  [[nodiscard]] ClassOf class_of() const {
+    return [this](PathId path) { return classes_.of(path); };
+  }
+  void add_pieces();
+  void index_paths();
+  void classify_paths(const GrowScene& scene);
+  void count_segments(std::size_t tile);
+  void drop_unused_paths(const GrowScene& scene);
+  void update_regions(std::size_t tile, const Leaves& changed, const GrowScene& scene);
+  void note_rebuilt_tunnels(std::size_t tile);
+  void find_hits(std::size_t tile, const GrowScene& scene, GrowCounters& counters);
+  [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
+
+  Image image_;
+  Residency& residency_;
+  std::vector<LightId> lights_;
+  PathIndex index_;
+  PathClasses classes_;
+  std::vector<ObjectId> atoms_;
+  ImageRegions regions_;
+  std::vector<std::uint64_t> tile_segments_;
+  std::vector<std::uint8_t> stays_without_hits_;   // by tile
+  std::vector<std::uint32_t> found_again_;         // by tile: samples, since its hits have been missing
+  std::atomic<double> hit_seconds_ = kHitSeconds;  // measured as hits are found again
+  std::atomic<std::uint64_t> rebuilt_tunnels_ = 0, rebuilt_tunnel_bytes_ = 0;
+  std::uint64_t segments_ = 0, samples_ = 0;
+  std::size_t compact_paths_;  // size of the path table when it last held no unused paths
+};
+
+}  // namespace relook

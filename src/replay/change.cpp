@@ -1,0 +1,192 @@
+#include "replay/change.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "trace/box_range.h"
+
+namespace relook {
+namespace {
+
+/// What decides where a cut-out surface has holes.
+bool same_holes(const Material& a, const Material& b) {
+  return a.alpha_cutoff == b.alpha_cutoff && a.base_color.a == b.base_color.a &&
+         a.slot(Slot::base_color) == b.slot(Slot::base_color);
+}
+
+/// Do the rays that a surface spawns leave in the same directions? `optics`: of both materials.
+bool same_directions(const Material& a, const Material& b, const SurfaceOptics& optics) {
+  const bool same_normal = a.normal_scale == b.normal_scale && a.slot(Slot::normal) == b.slot(Slot::normal);
+  const bool same_coat = a.clearcoat_normal_scale == b.clearcoat_normal_scale &&
+                         a.slot(Slot::clearcoat_normal) == b.slot(Slot::clearcoat_normal);
+  return (same_normal || !optics.spawns()) && (same_coat || !optics.coat_reflects);
+}
+
+/// `optics`: of the object's mesh with `after`.
+std::uint8_t material_flags(const RayObject& before, const Material& after, const SurfaceOptics& optics) {
+  unsigned flags = 0;
+  if (before.optics.cut_out != optics.cut_out || (optics.cut_out && !same_holes(*before.material, after)) ||
+      before.optics.culls_back != optics.culls_back)
+    flags |= RayChange::moved | RayChange::shadows;
+  if (before.optics.passes_light != optics.passes_light) flags |= RayChange::shadows;
+  if (before.optics != optics || !same_directions(*before.material, after, optics)) flags |= RayChange::respawns;
+  return static_cast<std::uint8_t>(flags);
+}
+
+bool same_placement(const Light& a, const Light& b) {
+  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
+}
+bool same_color(const Light& a, const Light& b) {
+  return a.color == b.color && a.intensity == b.intensity && a.range == b.range && a.inner_cone == b.inner_cone &&
+         a.outer_cone == b.outer_cone;
+}
+
+/// Collects the flags of objects and their values before the edit.
+class ObjectChanges {
+ public:
+  ObjectChanges(const RayScene& ray_scene, const Scene& scene, StepChange& change)
+      : ray_scene_(ray_scene), scene_(scene), change_(change) {}
+
+  void move(const SceneDelta::ObjectChange& object) {
+    Object placement = object.before;
+    placement.material = scene_.object(object.id).material;
+    if (placement == scene_.object(object.id)) return;  // only its material is another one
+    flag(object.id, RayChange::moved | RayChange::shadows);
+  }
+  void compare_material(ObjectId id, const Material& after) {
+    if (id.index() >= ray_scene_.size() || !scene_.object(id).alive) return;
+    const RayObject& before = ray_scene_.object(id);
+    if (before.alive) flag(id, material_flags(before, after, surface_optics(after, *before.mesh)));
+  }
+
+ private:
+  void flag(ObjectId id, unsigned flags) {
+    if (flags == 0) return;
+    change_.rays.reserve(scene_.objects.size());
+    std::uint8_t& known = change_.rays.objects[id.index()];
+    if (known == 0 && id.index() < ray_scene_.size()) {
+      change_.rays.before_index[id.index()] = static_cast<std::uint32_t>(change_.rays.before.size());
+      change_.rays.before.push_back(ray_scene_.object(id));
+    }
+    known = static_cast<std::uint8_t>(known | flags);
+    change_.any_moved = change_.any_moved || (flags & RayChange::moved) != 0;
+    change_.any_shadows = change_.any_shadows || (flags & RayChange::shadows) != 0;
+    change_.any_respawns = change_.any_respawns || (flags & RayChange::respawns) != 0;
+  }
+
+  const RayScene& ray_scene_;
+  const Scene& scene_;
+  StepChange& change_;
+};
+
+void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::vector<LightId>& old_lights,
+                        StepChange& change) {
+  std::vector<LightId> moved;
+  for (const auto& light : delta.lights) {
+    const Light& after = scene.light(light.id);
+    if (!same_placement(light.before, after)) moved.push_back(light.id);
+    if (!same_color(light.before, after)) change.colors.parameters.lights.push_back(light.id);
+  }
+  std::ranges::sort(change.colors.parameters.lights);
+  change.rays.old_lights = old_lights;
+  change.rays.lights_changed = scene.light_order != old_lights || !moved.empty();
+  std::unordered_map<LightId, std::uint32_t> kept;  // by place in the old order
+  for (std::uint32_t i = 0; i < old_lights.size(); ++i) kept.emplace(old_lights[i], i);
+  for (const LightId light : moved) kept.erase(light);
+  for (const LightId light : scene.light_order) {
+    const auto old = kept.find(light);
+    change.rays.old_light_index.push_back(old != kept.end() ? old->second : kNoNode);
+  }
+}
+
+}  // namespace
+
+StepChange find_change(const RayScene& ray_scene, const Scene& scene, const SceneDelta& delta,
+                       const std::vector<LightId>& old_lights) {
+  StepChange change;
+  ObjectChanges objects(ray_scene, scene, change);
+  for (const auto& material : delta.materials) {
+    const Material& after = scene.material(material.id);
+    const FieldMask fields = changed_fields(material.before, after);
+    if (fields != 0) change.colors.parameters.materials.emplace_back(material.id, fields);
+    if (structure_of(material.before) != structure_of(after)) change.colors.restructured.push_back(material.id);
+  }
+  std::ranges::sort(change.colors.parameters.materials);
+  // Objects that have another material now follow below.
+  for (const auto& material : delta.materials)
+    if (material.id.index() < ray_scene.material_count())
+      for (const ObjectId user : ray_scene.users_of(material.id))
+        if (scene.object(user).material == material.id) objects.compare_material(user, scene.material(material.id));
+  for (const auto& object : delta.objects) {
+    objects.move(object);
+    if (object.before.material == scene.object(object.id).material) continue;
+    objects.compare_material(object.id, scene.material(scene.object(object.id).material));
+    change.colors.reassigned.push_back(object.id);
+  }
+  find_light_changes(scene, delta, old_lights, change);
+  change.colors.parameters.ambient = delta.ambient_before.has_value();
+  change.colors.parameters.environment = delta.environment_before.has_value();
+  change.colors.new_environment =
+      delta.environment_before && (delta.environment_before->image == nullptr) != (scene.environment.image == nullptr);
+  return change;
+}
+
+StepChange no_change(const std::vector<LightId>& lights) {
+  StepChange change;
+  change.rays.old_lights = lights;
+  for (std::uint32_t i = 0; i < lights.size(); ++i) change.rays.old_light_index.push_back(i);
+  return change;
+}
+
+bool is_compressible(const ColorChange& change) {
+  return change.reassigned.empty() && std::ranges::none_of(change.parameters.materials, [](const auto& material) {
+           return (material.second & kMappingMask) != 0;
+         });
+}
+
+std::vector<ObjectId> selection_of(const StepChange& change) {
+  std::vector<ObjectId> selection;
+  for (std::uint32_t i = 0; i < change.rays.objects.size(); ++i)
+    if ((change.rays.objects[i] & (RayChange::moved | RayChange::shadows)) != 0) selection.emplace_back(i);
+  return selection;
+}
+
+ChangeBoxes boxes_of(const StepChange& change, const RayScene& ray_scene, std::span<const ObjectId> absent) {
+  const RayChange& rays = change.rays;
+  ChangeBoxes boxes;
+  std::vector<Box> moved, before, after;
+  for (ObjectId id : selection_of(change)) {
+    const RayObject& now = ray_scene.object(id);
+    const bool is_moved = (rays.flags(id) & RayChange::moved) != 0,
+               shadows = (rays.flags(id) & RayChange::shadows) != 0;
+    const bool is_there = now.alive && !std::ranges::binary_search(absent, id);
+    if (is_there && is_moved) moved.push_back(world_bounds(now));
+    if (is_there && shadows) after.push_back(world_bounds(now));
+    boxes.condition = std::max(boxes.condition, now.condition);
+    if (!shadows || rays.before_index[id.index()] == kNoNode) continue;
+    const RayObject& then = rays.before[rays.before_index[id.index()]];
+    if (then.alive) before.push_back(world_bounds(then));
+    boxes.condition = std::max(boxes.condition, then.condition);
+  }
+  boxes.moved = box_set(moved);
+  boxes.shadows_before = box_set(before);
+  boxes.shadows_after = box_set(after);
+  return boxes;
+}
+
+void build_selection(StepChange& change, const RayScene& ray_scene, std::span<const ObjectId> absent, Tracer& tracer) {
+  RayChange& rays = change.rays;
+  std::vector<Tracer::Placed> moved, before, after;
+  for (ObjectId id : selection_of(change)) {
+    const bool is_there = !std::ranges::binary_search(absent, id);
+    if (is_there && (rays.flags(id) & RayChange::moved) != 0) moved.push_back({id, &ray_scene.object(id)});
+    if ((rays.flags(id) & RayChange::shadows) == 0) continue;
+    if (is_there) after.push_back({id, &ray_scene.object(id)});
+    if (rays.before_index[id.index()] != kNoNode) before.push_back({id, &rays.before[rays.before_index[id.index()]]});
+  }
+  if (!moved.empty()) rays.moved_after = tracer.build(moved);
+  if (!before.empty()) rays.shadows_before = tracer.build(before);
+  if (!after.empty()) rays.shadows_after = tracer.build(after);
+}
+
+}  // namespace relook

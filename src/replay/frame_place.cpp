@@ -1,0 +1,39 @@
+#include "replay/frame_place.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace relook {
+namespace {
+
+std::string numbered(const char* folder, const FramePlace& place, const char* suffix) {
+  char step[32];
+  std::snprintf(step, sizeof step, "%04u", place.step);
+  const std::string label = step_label(place);
+  const std::size_t within = label.find('_');
+  return std::string(folder) + "/" + step + (within == std::string::npos ? "" : label.substr(within)) + suffix;
+}
+
+}  // namespace
+
+std::string step_label(const FramePlace& place) {
+  std::string label = std::to_string(place.step);
+  if (!place.number) return label;
+  const std::string digits = std::to_string(*place.number);
+  const std::size_t width = std::max<std::size_t>(2, std::to_string(place.count).size());
+  return label + "_" + std::string(width - std::min(width, digits.size()), '0') + digits;
+}
+
+std::string frame_name(const FramePlace& place) { return numbered("frames", place, ".exr"); }
+std::string preview_name(const FramePlace& place) { return numbered("previews", place, ".png"); }
+
+FramePlace place_of(const JournalStep& entry, std::uint32_t step, std::size_t frame) {
+  if (entry.drag.empty() && entry.wedge.empty()) return {step, std::nullopt, 0};
+  return {step, static_cast<std::uint32_t>(frame + 1), static_cast<std::uint32_t>(frames_of(entry).size())};
+}
+
+FramePlace last_place_of(const JournalStep& entry, std::uint32_t step) {
+  return place_of(entry, step, frames_of(entry).size() - 1);
+}
+
+}  // namespace relook

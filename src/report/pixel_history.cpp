@@ -1,0 +1,156 @@
+#include "report/pixel_history.h"
+
+#include <cstring>
+#include <set>
+
+#include "color/shade.h"
+#include "image/sampling.h"
+#include "replay/change.h"
+#include "report/pixel_facts.h"
+#include "trace/scene_level.h"
+
+namespace relook {
+namespace {
+
+const std::string* find(const std::map<ObjectId, std::string>& names, ObjectId id) {
+  const auto found = names.find(id);
+  return found == names.end() ? nullptr : &found->second;
+}
+
+/// What tells why a pixel changed: the trees before and after an edit, and the selection's levels.
+struct Comparison {
+  const Scene& scene;  // after the edit
+  const PixelFacts &before, &after;
+  const RayChange& rays;
+
+  /// Objects that changed and meet a segment whose shadow is another now, with a sentence each.
+  [[nodiscard]] std::map<ObjectId, std::string> shadow_casters() const {
+    std::map<ObjectId, std::string> casters;
+    for (const auto& [place, segment] : before.segments) {
+      const auto now = after.segments.find(place);
+      const bool is_same =
+          now != after.segments.end() && now->second.state == segment.state && now->second.filters == segment.filters;
+      if (!is_same) note_blockers(rays.shadows_before, segment, casters);
+    }
+    for (const auto& [place, segment] : after.segments) {
+      const auto then = before.segments.find(place);
+      const bool is_same = then != before.segments.end() && then->second.state == segment.state &&
+                           then->second.filters == segment.filters;
+      if (!is_same) note_blockers(rays.shadows_after, segment, casters);
+    }
+    return casters;
+  }
+
+  static void note_blockers(const Tracer::TopLevel& level, const SegmentFacts& segment,
+                            std::map<ObjectId, std::string>& casters) {
+    if (level.empty() || segment.state == ShadowState::facing_away) return;
+    std::vector<Crossing> crossings;
+    Tracer::blockers(level, {segment.segment.origin, segment.segment.direction, segment.segment.t_max}, crossings);
+    for (const Crossing& crossing : crossings) casters.try_emplace(crossing.object, "shadow from " + segment.name);
+  }
+
+  [[nodiscard]] std::vector<std::string> causes(const SceneDelta& delta) const {
+    std::vector<std::string> causes;
+    const std::map<ObjectId, std::string> casters = shadow_casters();
+    for (const SceneDelta::MaterialChange& change : delta.materials) add_material(change.id, casters, causes);
+    for (const SceneDelta::ObjectChange& change : delta.objects) {
+      const std::string name = "node " + object_name(scene.object(change.id)) + ": ";
+      for (const auto* names : {&before.hits, &after.hits, &before.filters, &after.filters, &casters})
+        if (const std::string* how = find(*names, change.id)) {
+          causes.push_back(name + *how);
+          break;
+        }
+    }
+    for (const SceneDelta::LightChange& change : delta.lights)
+      for (const PixelFacts* facts : {&before, &after})
+        if (const auto reached = facts->lights.find(change.id); reached != facts->lights.end()) {
+          const Light& light = scene.light(change.id);
+          causes.push_back("light " + (light.light.empty() ? change.before.light : light.light) + ": on " +
+                           reached->second);
+          break;
+        }
+    if (delta.ambient_before && !(before.hits.empty() && after.hits.empty()))
+      causes.push_back("ambient light: on " + (before.hits.empty() ? after : before).hits.begin()->second);
+    if (delta.environment_before && !(before.environment.empty() && after.environment.empty()))
+      causes.push_back("environment: " + (before.environment.empty() ? after : before).environment);
+    return causes;
+  }
+
+  void add_material(MaterialId id, const std::map<ObjectId, std::string>& casters,
+                    std::vector<std::string>& causes) const {
+    const std::string& given = scene.material(id).name;
+    const std::string name = "material " + (given.empty() ? "(default)" : given) + ": ";
+    std::set<std::string> known;
+    for (const PixelFacts* facts : {&before, &after})
+      if (const auto uses = facts->materials.find(id); uses != facts->materials.end())
+        known.insert(uses->second.begin(), uses->second.end());
+    for (const auto& [object, how] : casters)
+      if (scene.object(object).material == id) known.insert(how + " of " + object_name(scene.object(object)));
+    for (const std::string& how : known) causes.push_back(name + how);
+  }
+};
+
+}  // namespace
+
+struct PixelHistory::Impl {
+  SceneState state;
+  ViewOptions view;
+  TileRect pixel;
+  RayScene rays;
+  SceneLevel level{true};  // asked for blockers
+  Rgba color{0, 0, 0, 0};
+  PixelFacts facts;
+
+  Impl(SceneState s, const ViewOptions& v, std::uint32_t x, std::uint32_t y)
+      : state(std::move(s)), view(v), pixel{x, y, x + 1, y + 1}, rays(state.scene()) {
+    view.shadow_bits = 0;  // colours do not depend on counters
+    trace();
+  }
+
+  void trace() {
+    const GrowScene grow{rays, &level.current(rays), view.max_depth, view.shadow_bits};
+    const PrimaryRays primary(state.scene().camera, view);
+    std::vector<SpawnedRay> primaries;
+    primary.append(pixel, 0, view.samples, primaries);
+    TreeBlock block;
+    std::vector<std::uint32_t> roots;
+    GrowCounters counters;
+    trace_trees(grow, primaries, 0, block, roots, counters);
+    ProgramTable programs;
+    std::vector<Rgba> colors(view.samples);
+    Shader(rays, programs).shade(block, roots, colors);
+    color = pixel_color(colors.data(), view.samples);
+    facts = pixel_facts(state.scene(), block, roots);
+  }
+
+  PixelStep step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+    PixelStep result;
+    const std::vector<LightId> old_lights = state.scene().light_order;
+    const SceneDelta delta = apply_edit(state, edit, file, folder);
+    result.classification = classify(state.scene(), delta);
+    StepChange change = find_change(rays, state.scene(), delta, old_lights);
+    rays.update(state.scene(), delta);
+    level.note_changed(selection_of(change));
+    result.before = color;
+    const PixelFacts before = std::move(facts);
+    trace();
+    result.after = color;
+    result.is_changed = std::memcmp(&result.before, &result.after, sizeof(Rgba)) != 0;
+    if (!result.is_changed) return result;
+    build_selection(change, rays, {}, level.tracer());
+    result.causes = Comparison{state.scene(), before, facts, change.rays}.causes(delta);
+    return result;
+  }
+};
+
+PixelHistory::PixelHistory(SceneState state, const ViewOptions& view, std::uint32_t x, std::uint32_t y)
+    : impl_(std::make_unique<Impl>(std::move(state), view, x, y)) {}
+PixelHistory::~PixelHistory() = default;
+
+Rgba PixelHistory::color() const { return impl_->color; }
+const std::vector<std::string>& PixelHistory::paths() const { return impl_->facts.lines; }
+PixelStep PixelHistory::step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+  return impl_->step(edit, file, folder);
+}
+
+}  // namespace relook

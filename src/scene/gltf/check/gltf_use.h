@@ -1,0 +1,34 @@
+// What the active scene of a glTF file reaches, and so what of a file can be wrong without harm. Used by the importer
+// alone.
+#pragma once
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "base/json.h"
+#include "scene/look/look_schema.h"
+
+namespace relook {
+
+/// By index into glTF's arrays. Variants count as used: an edit away.
+struct GltfUse {
+  std::vector<bool> nodes, cameras, lights, meshes, skins, materials, textures, images, samplers;
+  std::vector<bool> skinned_meshes;  // of a node with a skin
+  struct Primitive {
+    std::array<bool, 2> uv{};  // TEXCOORD_n is read by a texture of its materials
+    bool is_lit = false;       // by one of them
+  };
+  std::vector<std::vector<Primitive>> primitives;  // by mesh
+
+  [[nodiscard]] const std::vector<bool>& of(Section section) const;
+  /// Whether a column of a primitive, or of its morph targets, counts for the picture; tangents can be derived.
+  [[nodiscard]] bool reads(std::size_t mesh, std::size_t primitive, std::string_view semantic) const;
+};
+
+/// Requires: every index in `gltf` is in range and its nodes are trees. Other values may be wrong.
+[[nodiscard]] GltfUse gltf_use(const Json& gltf);
+
+/// glTF's array behind a section or the cameras; an empty one where there is none.
+[[nodiscard]] const Json& gltf_array(const Json& gltf, Section section);
+
+}  // namespace relook

@@ -1,0 +1,222 @@
+// glTF to look document: arrays become objects keyed by unique name, indices become names, every default is filled in,
+// what relook does not support is left out.
+#include "scene/look/look.h"
+
+#include "base/import_memory.h"
+#include "scene/gltf/check/gltf_use.h"
+#include "scene/look/look_check.h"
+#include "scene/look/look_names.h"
+#include "scene/look/look_schema.h"
+
+namespace relook {
+namespace {
+
+const Json& member_or_empty(const Json& value, std::string_view key) {
+  static const Json empty = Json::array();
+  if (!value.is_object()) return empty;
+  const auto found = value.find(key);
+  return found == value.end() ? empty : *found;
+}
+
+/// One unique printable name per item of a glTF array.
+std::vector<std::string> names_of(const Json& items, std::string_view noun) {
+  UniqueNames unique;
+  std::vector<std::string> names;
+  names.reserve(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const Json& given = member_or_empty(items[i], "name");
+    std::string name = given.is_string() ? printable(given.get_ref<const std::string&>()) : "";
+    if (name.empty()) name = std::string(noun) + "_" + std::to_string(i);
+    names.push_back(unique.give(std::move(name)));
+  }
+  return names;
+}
+
+/// Their names in the order of the file.
+std::vector<std::string> name_cameras(const Json& gltf, const std::vector<std::size_t>& active,
+                                      LookDocument& document) {
+  const Json& cameras = member_or_empty(gltf, "cameras");
+  const std::vector<std::string> names = names_of(cameras, "camera");
+  document.cameras = Json::object();
+  for (std::size_t i = 0; i < names.size(); ++i)
+    document.cameras[names[i]] = {{"node", ""}, {"camera", cameras[i]}, {"index", i}};
+  for (auto node = active.rbegin(); node != active.rend(); ++node) {
+    const Json& camera = member_or_empty(gltf["nodes"][*node], "camera");
+    if (camera.is_number_unsigned())
+      document.cameras[names.at(camera)]["node"] = document.order[static_cast<std::size_t>(Section::nodes)][*node];
+  }
+  return names;
+}
+
+void name_variants(const Json& gltf, LookDocument& document) {
+  const Json& extension = member_or_empty(member_or_empty(gltf, "extensions"), "KHR_materials_variants");
+  const Json& variants = member_or_empty(extension, "variants");
+  if (!variants.empty())
+    document.look["extensions"]["KHR_materials_variants"]["variants"] = names_of(variants, "variant");
+}
+
+/// name_indices() for nodes' cameras, whose table has no order: in one step each, for any number of both.
+void name_camera(const std::vector<std::string>& cameras, Json& node) {
+  const Json& index = member_or_empty(node, "camera");
+  if (index.is_number_unsigned() && index.get<std::size_t>() < cameras.size())
+    node["camera"] = cameras[index.get<std::size_t>()];
+}
+
+/// The most targets of the primitives of a mesh.
+std::size_t target_count(const LookDocument& document, const std::string& mesh) {
+  std::size_t count = 0;
+  if (const auto found = document.assets->mesh_primitives.find(mesh); found != document.assets->mesh_primitives.end())
+    for (const MeshId id : found->second) count = std::max(count, document.assets->meshes[id.index()].targets.size());
+  return count;
+}
+
+/// As many weights as there are targets: 0 where none is given.
+void fit_weights(Json& value, std::size_t targets) {
+  if (targets == 0) {
+    value.erase("weights");
+    return;
+  }
+  Json& weights = value["weights"];
+  if (weights.is_null()) weights = Json::array();
+  if (!weights.is_array()) return;
+  Json fitted = Json::array();
+  for (std::size_t i = 0; i < targets; ++i) fitted.push_back(i < weights.size() ? weights[i] : Json(0.0));
+  weights = std::move(fitted);
+}
+
+/// The weights of a node, or else of its mesh, where edits find them (glTF 2.0 section 3.7.2.2).
+void give_weights(const LookDocument& document, Json& node) {
+  const Json& mesh = member_or_empty(node, "mesh");
+  const auto found = mesh.is_string() ? document.look["meshes"].find(mesh.get_ref<const std::string&>())
+                                      : document.look["meshes"].end();
+  if (found == document.look["meshes"].end() || !found->contains("weights")) {
+    node.erase("weights");
+    return;
+  }
+  if (!node.contains("weights")) node["weights"] = (*found)["weights"];
+  fit_weights(node, (*found)["weights"].size());
+}
+
+/// Copies one glTF item into the look document under its name.
+void add_entity(LookDocument& document, Section section, std::size_t index, Json value) {
+  const std::string& name = document.order[static_cast<std::size_t>(section)][index];
+  cut_to_schema(schema_of(section), value);
+  if (value.is_object()) value.erase("name");
+  name_indices(document, section, value);
+  if (section == Section::images) set_relook_extra(value, "content", name);
+  if (section == Section::meshes) set_relook_extra(value, "geometry", name);
+  if (section == Section::nodes && document.instances.contains(name)) set_relook_extra(value, "instances", name);
+  if (section == Section::skins) set_relook_extra(value, "inverseBinds", name);
+  if (section == Section::meshes) fit_weights(value, target_count(document, name));
+  if (section == Section::nodes) give_weights(document, value);
+  fill_defaults(section, value);
+  document.look[std::string(section_name(section))][name] = std::move(value);
+}
+
+void move_assets(ImportedGltf& imported, LookDocument& document) {
+  document.assets = counted_assets();
+  const auto& mesh_names = document.order[static_cast<std::size_t>(Section::meshes)];
+  for (std::size_t i = 0; i < imported.meshes.size(); ++i) {
+    std::vector<MeshId>& ids = document.assets->mesh_primitives[mesh_names.at(i)];
+    for (Mesh& mesh : imported.meshes[i]) {
+      mesh.name = mesh_names[i];
+      ids.emplace_back(static_cast<std::uint32_t>(document.assets->meshes.size()));
+      document.assets->meshes.push_back(std::move(mesh));
+    }
+  }
+  const auto& image_names = document.order[static_cast<std::size_t>(Section::images)];
+  for (std::size_t i = 0; i < imported.images.size(); ++i) {
+    imported.images[i].name = image_names.at(i);
+    document.assets->images[image_names[i]] = std::move(imported.images[i]);
+  }
+  const auto& node_names = document.order[static_cast<std::size_t>(Section::nodes)];
+  for (std::size_t i = 0; i < imported.instances.size(); ++i)
+    if (!imported.instances[i].empty()) document.instances[node_names.at(i)] = std::move(imported.instances[i]);
+  const auto& skin_names = document.order[static_cast<std::size_t>(Section::skins)];
+  for (std::size_t i = 0; i < imported.inverse_binds.size(); ++i)
+    if (!imported.inverse_binds[i].empty())
+      document.inverse_binds[skin_names.at(i)] = std::move(imported.inverse_binds[i]);
+  count_geometry(document);
+}
+
+Json active_scene(const Json& gltf) {
+  const Json& scenes = member_or_empty(gltf, "scenes");
+  Json scene = scenes.empty() ? Json::object() : scenes.at(gltf.value("scene", std::size_t{0}));
+  cut_to_schema(scene_schema(), scene);
+  return scene;
+}
+
+/// Glass with a volume, whose back faces are seen through its front ones. Of values that nothing has checked yet.
+bool is_solid(const Json& material) {
+  const auto is_positive = [&](const char* pointer) {
+    const Json::json_pointer at(pointer);
+    return material.contains(at) && material[at].is_number() && material[at].get<double>() > 0;
+  };
+  const Json::json_pointer model("/extras/relook/model");
+  if (material.contains(model) && material[model] == "blinn-phong") return is_positive("/extras/relook/refraction");
+  return is_positive("/extensions/KHR_materials_volume/thicknessFactor") &&
+         is_positive("/extensions/KHR_materials_transmission/transmissionFactor");
+}
+
+}  // namespace
+
+void fill_defaults(Section section, Json& value) {
+  if (!value.is_object()) return;
+  if (section == Section::materials && value.contains(Json::json_pointer("/extensions/KHR_materials_unlit")) &&
+      !value.contains(Json::json_pointer("/extras/relook/model"))) {
+    Json& extras = value["extras"];
+    if (extras.is_null()) extras = Json::object();
+    if (extras.is_object() && (!extras.contains("relook") || extras["relook"].is_object()))
+      extras["relook"]["model"] = "unlit";
+  }
+  if (section == Section::materials && !value.contains("doubleSided") && is_solid(value)) value["doubleSided"] = true;
+  if (section == Section::lights && value.value("type", Json()) == "spot" && !value.contains("spot"))
+    value["spot"] = Json::object();
+  if (section == Section::nodes && value.contains("matrix")) {
+    // A node has either a matrix or translation, rotation and scale: no defaults for the latter beside the former.
+    const Json given = value;
+    fill_from_schema(schema_of(section), value);
+    for (const char* key : {"translation", "rotation", "scale"})
+      if (!given.contains(key)) value.erase(key);
+    return;
+  }
+  fill_from_schema(schema_of(section), value);
+}
+
+LookDocument make_look_document(ImportedGltf imported) {
+  LookDocument document;
+  document.file = imported.file;
+  const Json& gltf = imported.gltf;
+  document.look = Json::object();
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const auto section = static_cast<Section>(s);
+    document.look[std::string(section_name(section))] = Json::object();
+    document.order[s] = names_of(gltf_array(gltf, section), target_noun(static_cast<Target>(s)));
+  }
+  move_assets(imported, document);
+  const std::vector<std::size_t> active = active_nodes(gltf);
+  const std::vector<std::string> cameras = name_cameras(gltf, active, document);
+  name_variants(gltf, document);
+  for (std::size_t s = 0; s < kSectionCount; ++s) {
+    const auto section = static_cast<Section>(s);
+    if (section == Section::nodes) continue;
+    const Json& items = gltf_array(gltf, section);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (section == Section::skins && !document.inverse_binds.contains(document.order[s][i])) continue;
+      Json item = items[i];
+      if (section == Section::materials && item.is_object() && is_solid(item)) item.erase("doubleSided");
+      add_entity(document, section, i, std::move(item));
+    }
+  }
+  for (std::size_t index : active) {
+    Json node = gltf["nodes"][index];
+    name_camera(cameras, node);
+    add_entity(document, Section::nodes, index, std::move(node));
+  }
+  document.look["scene"] = active_scene(gltf);
+  fill_from_schema(scene_schema(), document.look["scene"]);
+  check_values(document);
+  return document;
+}
+
+}  // namespace relook

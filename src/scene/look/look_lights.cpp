@@ -1,0 +1,149 @@
+// --lights auto: a key, a fill and a rim light, as directional lights placed relative to the camera, so that they do
+// not depend on the size of the scene. A white diffuse surface that faces the key alone is about 0.8. Where none of
+// them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "scene/compile/compile_material.h"
+#include "scene/look/look.h"
+#include "scene/look/look_bounds.h"
+#include "scene/look/look_names.h"
+
+namespace relook {
+namespace {
+
+struct AutoLight {
+  const char* name;
+  double right, up, back;  // where the light comes from, in the camera's frame
+  double white_diffuse;    // value of a white diffuse surface that faces it
+  Json color;
+};
+
+/// The shortest rotation that turns -z into `travel` (a light shines along its node's -z).
+Json rotation_to(const Imath::V3d& travel) {
+  const Imath::V3d axis = Imath::V3d(0, 0, -1).cross(travel);
+  const double w = 1 - travel.z;
+  const double length = std::sqrt(axis.dot(axis) + w * w);
+  if (length < 1e-6) return {0.0, 1.0, 0.0, 0.0};
+  return {axis.x / length, axis.y / length, axis.z / length, w / length};
+}
+
+/// What a ray from the camera's eye meets first, whichever side it shows.
+struct Obstacle {
+  double distance = std::numeric_limits<double>::infinity();
+  std::string node;
+};
+
+/// Distance along a ray from the origin to a triangle; infinity for a miss. By Moeller and Trumbore, 1997.
+double distance_to(const std::array<Imath::V3d, 3>& corners, const Imath::V3d& along) {
+  const Imath::V3d e1 = corners[1] - corners[0], e2 = corners[2] - corners[0], p = along.cross(e2);
+  const double determinant = e1.dot(p);
+  const double none = std::numeric_limits<double>::infinity();
+  if (determinant == 0) return none;
+  const Imath::V3d q = (-corners[0]).cross(e1);
+  const double u = -corners[0].dot(p) / determinant, v = along.dot(q) / determinant;
+  const double t = e2.dot(q) / determinant;
+  return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : none;
+}
+
+/// Whether a surface of a mesh's primitive lets no light through.
+struct Wall {
+  bool is_opaque = true, is_double_sided = false;
+};
+Wall wall_of(const LookDocument& document, const std::string& node, const Mesh& mesh) {
+  const Json& name = document.look.at("nodes").at(node).at("mesh");
+  const Json* primitives = member_at(document.look, {"meshes", name.get_ref<const std::string&>(), "primitives"});
+  if (primitives == nullptr || mesh.primitive >= primitives->size()) return {};
+  const Json* of_primitive = member_at((*primitives)[mesh.primitive], {"material"});
+  if (of_primitive == nullptr) return {};
+  const Json& material = document.look.at("materials").at(of_primitive->get_ref<const std::string&>());
+  const auto is_zero = [&](std::initializer_list<std::string_view> keys) {
+    const Json* value = member_at(material, keys);
+    return value == nullptr || *value == 0;
+  };
+  const bool is_opaque = material.at("alphaMode") == "OPAQUE" &&
+                         is_zero({"extensions", "KHR_materials_transmission", "transmissionFactor"}) &&
+                         is_zero({"extras", "relook", "transparency"}) && is_zero({"extras", "relook", "refraction"});
+  return {is_opaque, material.at("doubleSided").get<bool>()};
+}
+
+/// A way from the eye, and whether light comes along it (what is single-sided then stops it where its front faces the
+/// light) or a ray of the camera goes along it.
+struct Way {
+  Imath::V3d along;
+  bool is_of_light;
+};
+
+std::vector<Obstacle> obstacles(const LookDocument& document, const WidePoint& eye, const std::vector<Way>& ways) {
+  std::vector<Obstacle> nearest(ways.size());
+  for_each_placed_mesh(document, [&](const std::string& node, const Mesh& mesh, const WideTransform& world) {
+    const Wall wall = wall_of(document, node, mesh);
+    if (!wall.is_opaque) return;
+    const bool is_mirrored = world.determinant() < 0;
+    for (const auto& triangle : mesh.triangles) {
+      std::array<Imath::V3d, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i) corners[i] = Imath::V3d(mesh.positions[triangle[i]]) * world - eye;
+      const Imath::V3d front = (corners[1] - corners[0]).cross(corners[2] - corners[0]) * (is_mirrored ? -1.0 : 1.0);
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        if (!wall.is_double_sided && (front.dot(ways[i].along) > 0) != ways[i].is_of_light) continue;
+        if (const double distance = distance_to(corners, ways[i].along); distance < nearest[i].distance)
+          nearest[i] = {distance, node};
+      }
+    }
+  });
+  return nearest;
+}
+
+/// A light of the look document and its node, both called `wanted` or nearly so. `node`: its transform.
+void add_light(LookDocument& document, const char* wanted, Json light, Json node) {
+  const std::string name = unique_name(wanted, [&](const std::string& candidate) {
+    return document.look["lights"].contains(candidate) || document.look["nodes"].contains(candidate);
+  });
+  fill_defaults(Section::lights, light);
+  document.look["lights"][name] = std::move(light);
+  node["extensions"]["KHR_lights_punctual"]["light"] = name;
+  fill_defaults(Section::nodes, node);
+  document.look["nodes"][name] = std::move(node);
+}
+
+constexpr double kKeyDiffuse = 0.8;
+
+}  // namespace
+
+std::string add_auto_lights(LookDocument& document, const Camera& camera) {
+  const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, {1.0, 0.97, 0.92}},
+                              {"fill", 0.9, 0.3, 0.6, 0.22, {0.92, 0.96, 1.0}},
+                              {"rim", 0.3, 0.7, -0.9, 0.4, {1.0, 1.0, 1.0}}};
+  std::vector<Way> ways;
+  for (const AutoLight& light : lights)
+    ways.push_back({(Imath::V3d(camera.right) * light.right + Imath::V3d(camera.up) * light.up -
+                     Imath::V3d(camera.forward) * light.back)
+                        .normalized(),
+                    true});
+  ways.push_back({Imath::V3d(camera.forward), false});
+  const WideBox bounds = world_bounds(document);
+  const bool is_inside = bounds.intersects(camera.eye);
+  const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, ways) : std::vector<Obstacle>();
+  for (std::size_t i = 0; i < std::size(lights); ++i)  // a diffuse surface reflects 1 / pi of the illuminance
+    add_light(document, lights[i].name,
+              {{"type", "directional"},
+               {"color", lights[i].color},
+               {"intensity", lights[i].white_diffuse * std::numbers::pi}},
+              {{"rotation", rotation_to(-ways[i].along)}});
+  const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)), [](const Obstacle& o) {
+                           return std::isfinite(o.distance);
+                         });
+  if (!is_closed) return "";
+  const double extent = bounds.size().length() / 2;
+  const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
+  add_light(document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
+            {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}});
+  return "the camera stands in a room closed by node \"" + met.front().node +
+         "\", which no light of --lights auto reaches: a lamp at the camera lights it";
+}
+
+}  // namespace relook

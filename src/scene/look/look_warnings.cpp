@@ -1,0 +1,120 @@
+#include "scene/look/look_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "scene/compile/compile_material.h"
+#include "scene/look/look_bounds.h"
+#include "scene/look/look_schema.h"
+
+namespace relook {
+namespace {
+
+constexpr std::size_t kMostOfAKind = 20;
+
+/// Sentences of one kind; beyond a few only their number.
+class Kind {
+ public:
+  explicit Kind(std::vector<std::string>& warnings) : warnings_(warnings) {}
+  Kind(const Kind&) = delete;
+  Kind& operator=(const Kind&) = delete;
+  ~Kind() {
+    if (count_ > kMostOfAKind) warnings_.push_back("and " + std::to_string(count_ - kMostOfAKind) + " more like that");
+  }
+  void add(std::string sentence) {
+    if (++count_ <= kMostOfAKind) warnings_.push_back(std::move(sentence));
+  }
+
+ private:
+  std::vector<std::string>& warnings_;
+  std::size_t count_ = 0;
+};
+
+/// Without small scales, matrices and instances nothing is flattened: as a rule there is no need to look further.
+bool may_flatten(const Json& node) {
+  constexpr double kSmall = 1e-3;
+  if (node.contains("matrix") || node.contains("extras")) return true;
+  const auto scale = node.find("scale");
+  return scale != node.end() && std::ranges::any_of(*scale, [](const Json& part) {
+           return std::abs(part.get<double>()) < kSmall;
+         });
+}
+
+/// Of the mesh of a node, which a skin places wherever the node is; "" if nothing.
+std::string what_is_lost(const LookDocument& document, const Json& node, const WideTransform& world) {
+  if (!node.contains("mesh") || node.contains("skin")) return "";
+  const Json* instances = member_at(node, {"extras", "relook", "instances"});
+  const std::vector<Transform> alone(1);
+  const std::vector<Transform>& matrices =
+      instances == nullptr ? alone : document.instances.at(instances->get<std::string>());
+  const auto lost = std::ranges::count_if(matrices, [&](const Transform& matrix) {
+    const WideTransform placed = widened(matrix) * world;
+    return is_in_range(placed) && dimensions_of(rounded(placed, WidePoint(0, 0, 0))) < 2;
+  });
+  if (lost == 0) return "";
+  if (static_cast<std::size_t>(lost) == matrices.size()) return "its mesh is not drawn";
+  return std::to_string(lost) + " of its " + std::to_string(matrices.size()) + " instances are not drawn";
+}
+
+void warn_of_places(const LookDocument& document, std::vector<std::string>& warnings) {
+  if (std::ranges::none_of(document.look.at("nodes"), may_flatten)) return;
+  Kind objects(warnings), lights(warnings);
+  for_each_place(document, [&](const std::string& name, const Json& node, const WideTransform& world) {
+    if (const std::string lost = what_is_lost(document, node, world); !lost.empty())
+      objects.add("node \"" + name + "\" is scaled to nothing: " + lost);
+    const Json* light = member_at(node, {"extensions", "KHR_lights_punctual", "light"});
+    if (light == nullptr) return;
+    const Json& type = document.look.at("lights").at(light->get<std::string>()).at("type");
+    if (type == "point" || Imath::V3d(world[2][0], world[2][1], world[2][2]).length() > 1e-12) return;
+    lights.add("node \"" + name + "\" is scaled to nothing: its light has no direction and gives no light");
+  });
+}
+
+/// The textures that slots below a value name.
+void visit_textures(const Schema& schema, const Json& value, const std::function<void(const std::string&)>& visit) {
+  visit_names(schema, value, [&](Target target, const Json& name) {
+    if (target == Target::textures && name.is_string()) visit(name.get_ref<const std::string&>());
+  });
+}
+
+/// Of everything that a node shows, also in a variant.
+std::set<std::string> shown_materials(const LookDocument& document) {
+  std::set<std::string> shown;
+  for (const Json& node : document.look.at("nodes")) {
+    const Json* mesh = member_at(node, {"mesh"});
+    if (mesh == nullptr) continue;
+    visit_names(schema_of(Section::meshes), document.look.at("meshes").at(mesh->get<std::string>()),
+                [&](Target target, const Json& name) {
+                  if (target == Target::materials && name.is_string()) shown.insert(name.get<std::string>());
+                });
+  }
+  return shown;
+}
+
+void warn_of_textures(const LookDocument& document, std::vector<std::string>& warnings) {
+  Kind kind(warnings);
+  const Json& textures = document.look.at("textures");
+  for (const std::string& material : shown_materials(document)) {
+    const auto entry = document.look.at("materials").find(material);
+    if (entry == document.look.at("materials").end()) continue;
+    visit_textures(schema_of(Section::materials), *entry, [&](const std::string& name) {
+      const auto texture = textures.find(name);
+      if (texture == textures.end() || texture->contains("source")) return;
+      if (member_at(*texture, {"extras", "relook", "procedural"}) != nullptr) return;
+      kind.add("texture \"" + name + "\" has no image that is read: material \"" + material +
+               "\" is drawn without it");
+    });
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> look_warnings(const LookDocument& document) {
+  std::vector<std::string> warnings;
+  warn_of_places(document, warnings);
+  warn_of_textures(document, warnings);
+  return warnings;
+}
+
+}  // namespace relook

@@ -1,0 +1,14 @@
+// What of a scene cannot be seen though its file names it, said in words.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/look/look.h"
+
+namespace relook {
+
+/// Nodes that are scaled to nothing, lights without a direction, textures without an image: one sentence each, with what
+/// it means for the picture. Requires: check_values() passed.
+[[nodiscard]] std::vector<std::string> look_warnings(const LookDocument& document);
+
+}  // namespace relook

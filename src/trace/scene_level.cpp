@@ -1,0 +1,32 @@
+#include "trace/scene_level.h"
+
+#include <algorithm>
+
+namespace relook {
+
+void SceneLevel::note_changed(std::span<const ObjectId> objects) {
+  if (!is_built_) return;
+  changed_.insert(changed_.end(), objects.begin(), objects.end());
+  std::ranges::sort(changed_);
+  const auto repeated = std::ranges::unique(changed_);
+  changed_.erase(repeated.begin(), repeated.end());
+}
+
+const Tracer::TopLevel& SceneLevel::current(const RayScene& scene, std::span<const ObjectId> absent) {
+  // A level on top that holds much of the scene would slow every ray down.
+  const std::size_t most = std::max<std::size_t>(512, scene.size() / 16);
+  if (!is_built_ || changed_.size() > most) {
+    level_ = tracer_.build(scene);
+    changed_.clear();
+    is_built_ = true;
+  }
+  std::vector<ObjectId> hidden;
+  std::ranges::set_union(changed_, absent, std::back_inserter(hidden));
+  std::vector<Tracer::Placed> on_top;
+  for (ObjectId id : changed_)
+    if (!std::ranges::binary_search(absent, id)) on_top.push_back({id, &scene.object(id)});
+  tracer_.replace(level_, hidden, on_top);
+  return level_;
+}
+
+}  // namespace relook

@@ -1,0 +1,142 @@
+// Ray trees in flight: the nodes of some samples with everything that follows from their hits, ready to be shaded,
+// packed into the compact form, or both. Nodes of a sample stand together in preorder, children in the order of Branch.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "trace/surface.h"
+#include "trace/tracer.h"
+#include "trace/tree/ray_path.h"
+
+namespace relook {
+
+inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
+
+/// A ray on its way: the primary ray of a sample, or one spawned by a hit. One that goes straight on has no origin of
+/// its own: it is the ray that it comes from, behind that hit.
+struct SpawnedRay {
+  Point origin{0, 0, 0};
+  Direction direction{0, 0, -1};  // unit
+  float cone_width = 0;           // metres, at the origin
+  float cone_spread = 0;          // metres per metre
+  float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
+  std::uint8_t generation = 1;    // 1: primary
+  Branch branch = Branch::primary;
+  Channel channel = Channel::all;                      // follows from the branches that lead here
+  float start = 0;                                     // metres: nothing is met before
+  float end = std::numeric_limits<float>::infinity();  // nor after
+  Meeting behind{};           // the hit that it goes straight on from; t NaN: not known; object none: no such hit
+  float travelled = 0;        // metres from the origin to that hit
+  float travelled_slack = 0;  // distance_slack() there
+
+  [[nodiscard]] bool goes_on() const { return !behind.object.is_none(); }
+  [[nodiscard]] bool is_same_way(const SpawnedRay& other) const {
+    return origin == other.origin && direction == other.direction && goes_on() == other.goes_on();
+  }
+};
+
+/// The ray as it is traced.
+[[nodiscard]] inline Ray ray_of(const SpawnedRay& spawned) {
+  return {spawned.origin, spawned.direction, spawned.end, spawned.start, spawned.behind};
+}
+
+/// A node of a ray tree: a hit, or the environment when the ray left the scene.
+struct RayNode {
+  // A constructor, so that a new node is not cleared byte by byte first.
+  RayNode(std::uint32_t above, std::uint32_t of_sample, const SpawnedRay& way)
+      : parent(above), sample(of_sample), ray(way) {}
+
+  std::uint32_t parent;
+  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode};
+  std::uint32_t sample;  // within the tile
+  ObjectId object;       // none: miss
+  Hit hit;
+  SpawnedRay ray;                                     // that led here
+  std::uint8_t cut_mask = 0;                          // branches that the Fresnel cut-off removed
+  float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
+  float length = 0;                                   // metres from the ray's origin
+  float footprint = 0;                                // ray-cone width at the hit over the cosine of incidence
+  SurfacePoint point;
+  std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
+};
+
+/// What stands between a node and one light.
+struct LightLink {
+  ShadowState state = ShadowState::facing_away;
+  std::uint32_t first = 0;    // filtered: into TreeBlock::filters; blocked and counted: into TreeBlock::blocker_words
+  std::uint32_t filters = 0;  // how many, of a filtered light
+};
+
+/// A transparent surface on a shadow segment.
+struct FilterNode {
+  ObjectId object;
+  Hit hit;
+  SurfacePoint point;
+  float footprint = 0;
+  float length_inside = 0;  // metres of the segment inside the volume that it leaves here, 0 otherwise
+};
+
+struct TreeBlock {
+  std::vector<RayNode> nodes;
+  std::vector<LightLink> lights;
+  std::vector<FilterNode> filters;
+  std::vector<std::uint32_t> blocker_words;  // entries of blocked lights, as in paths
+
+  /// The entry of a blocked light. Requires: shadows are counted.
+  [[nodiscard]] std::span<const std::uint32_t> blocker_entry(const LightLink& link) const;
+
+  /// A state to go back to: what was appended since is dropped.
+  struct Mark {
+    std::size_t nodes = 0, lights = 0, filters = 0, blocker_words = 0;
+  };
+  [[nodiscard]] Mark mark() const { return {nodes.size(), lights.size(), filters.size(), blocker_words.size()}; }
+  void rewind(const Mark& mark) {
+    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(mark.nodes), nodes.end());
+    lights.resize(mark.lights);
+    filters.resize(mark.filters);
+    blocker_words.resize(mark.blocker_words);
+  }
+  void clear() { rewind({}); }
+};
+
+/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back. A pure function of the node,
+/// its object and the options.
+struct Spawned {
+  std::array<SpawnedRay, kBranches> rays;
+  std::uint8_t mask = 0;  // bit b: rays[b] is there
+  std::uint8_t cut_mask = 0;
+};
+[[nodiscard]] Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth);
+
+/// Fills length, footprint and point of a node whose ray, object and hit are set.
+void complete(RayNode& node, const RayObject& object);
+
+/// A hit's distance is known up to rounding, the more so the flatter the ray meets its triangle: the half width of the
+/// band, in metres along the ray, within which only the whole scene decides what is nearer.
+[[nodiscard]] float distance_slack(const RayNode& node, const RayObject& object);
+
+/// The shadow segment from a point to a light: t runs to 1 at a point or spot light.
+struct ShadowSegment {
+  bool faces = false;  // the light is above the smooth surface
+  Point origin{0, 0, 0};
+  Direction direction{0, 0, 1};
+  float t_max = 1;
+};
+[[nodiscard]] ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light);
+/// True where no light is gathered and no segments are kept: the inner side of a volume.
+[[nodiscard]] inline bool is_interface_only(const RayObject& object, const SurfacePoint& point) {
+  return object.optics.volume && point.inside;
+}
+
+/// Completes the filters [first, first + count) of one segment: points and lengths inside volumes.
+void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSegment& segment, FilterNode* filters,
+                      std::size_t count);
+
+/// The path words of the sample whose nodes start at `root`, appended to `words`; its hits appended to `hits`.
+void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, std::vector<std::uint32_t>& words,
+          std::vector<Hit>& hits);
+
+}  // namespace relook

@@ -1,0 +1,394 @@
+// Ray trees after a change of the scene (paper 2.2): stored segments are tested against the selection; only what it
+// touches is traced against the whole scene.
+#include "trace/box_range.h"
+#include "trace/object_rays.h"
+#include "trace/tree/grower.h"
+#include "trace/tree/segment_tests.h"
+#include "trace/tree/shadow_line.h"
+
+namespace relook {
+namespace {
+
+class Updater {
+ public:
+  Updater(const GrowScene& grow, const RayChange& change, const Touches* touches, std::uint32_t sample,
+          StoredTree stored, TreeBlock& block, GrowCounters& counters)
+      : grower_(grow, sample, block),
+        change_(change),
+        touches_(touches),
+        stored_(stored),
+        counters_(counters),
+        tests_(change, grow.shadow_bits, counters),
+        line_(grow.shadow_bits),
+        object_rays_(grow.objects, counters) {}
+
+  std::uint32_t update(const SpawnedRay& ray, std::uint32_t parent, History history) {
+    std::span<const Hit> hits;
+    const PathNode node = take(stored_, hits);
+    if (!node.is_miss() && (change_.flags(node.object()) & RayChange::moved) != 0) {
+      // The selection is removed: what lies behind it shows (paper 2.2).
+      counters_.culled.dropped += node.segments() + skip_children(stored_, node);
+      note(TreeChange::all);
+      return trace(ray, parent);
+    }
+    const std::uint32_t index = grower_.append(ray, parent);
+    if (!node.is_miss()) grower_.set_hit(index, node.object(), hits.front());
+    const Touch touch = may_touch(history);
+    if (test(index, node, touch.ray)) return index;
+    if (node.is_miss()) return index;
+    update_lights(index, node, hits, touch);
+    update_children(index, node, history);
+    return index;
+  }
+  [[nodiscard]] TreeChange what() const { return what_; }
+
+ private:
+  /// What of a node's segments the selection may meet.
+  [[nodiscard]] Touch may_touch(History history) const {
+    constexpr std::uint32_t kAllLights = 0xFFFFFFFFU;
+    if (touches_ == nullptr) return {history, true, true, kAllLights, kAllLights};
+    const Touch* touch = touch_of(*touches_, history);
+    return touch != nullptr ? *touch : Touch{history, false, false, 0, 0};
+  }
+
+  void note(TreeChange what) { what_ = std::max(what_, what); }
+
+  std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent) {
+    const std::uint32_t index = grower_.trace(ray, parent, counters_);
+    grower_.trace_lights(index, counters_);
+    return index;
+  }
+
+  /// The ray test: does the selection, where it is now, come before what is stored? If so, regrows the node.
+  bool test(std::uint32_t index, const PathNode& node, bool touched) {
+    TreeBlock& block = grower_.block();
+    const SpawnedRay ray = block.nodes[index].ray;
+    Ray segment = stored_segment(ray);
+    float slack = 0;
+    if (touched && !node.is_miss()) {
+      slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object()));
+      segment.t_max = std::min(block.nodes[index].length + slack, ray.end);
+    }
+    if (!tests_.tests_ray(touched, segment)) return false;
+    Meeting meeting = Tracer::intersect(change_.moved_after, segment);
+    if (meeting.object.is_none()) return false;
+    const Ray whole = grower_.whole_ray(ray, counters_);
+    if (ray.goes_on()) {  // behind what it comes from?
+      segment.behind = whole.behind;
+      segment.t_min = ray.start;
+      meeting = Tracer::intersect(change_.moved_after, segment);
+      if (meeting.object.is_none()) return false;
+    }
+    if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
+      ++counters_.ray_updates;
+      const Meeting nearest = Tracer::intersect(*grower_.grow().level, whole);
+      if (nearest.object == node.object() && nearest.hit == block.nodes[index].hit) return false;
+      if (!nearest.object.is_none()) return regrow(index, node, nearest);
+    }
+    return regrow(index, node, meeting);
+  }
+
+  /// Requires: something is met.
+  bool regrow(std::uint32_t index, const PathNode& node, const Meeting& meeting) {
+    note(TreeChange::all);
+    TreeBlock& block = grower_.block();
+    if (!node.is_miss()) block.lights.resize(block.nodes[index].first_light);
+    counters_.culled.dropped += node.shadow_segments + skip_children(stored_, node);
+    grower_.trace_from(index, meeting, counters_);
+    grower_.trace_lights(index, counters_);
+    return true;
+  }
+
+  void update_lights(std::uint32_t index, const PathNode& node, std::span<const Hit> hits, const Touch& touch) {
+    // What is stored by old light, since lights may have changed places.
+    EntryReader entries(node.entries, grower_.grow().shadow_bits);
+    FilterReader filters(hits.subspan(1));
+    stored_filters_.resize(change_.old_lights.size());
+    stored_entries_.resize(change_.old_lights.size());
+    for (std::size_t old = 0; old < change_.old_lights.size(); ++old) {
+      const ShadowState state = shadow_state(node.lights, old);
+      stored_entries_[old] = entries.next(state);
+      if (state == ShadowState::filtered) filters.next(stored_entries_[old].objects, stored_filters_[old]);
+    }
+    for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
+      const std::uint32_t old = change_.old_light_index[light];
+      const ShadowState before = old == kNoNode ? ShadowState::facing_away : shadow_state(node.lights, old);
+      update_light({index, light, {}, before, old == kNoNode ? 0 : old},
+                   touch.touches(before == ShadowState::blocked, light));
+    }
+    if (change_.lights_changed) note_lost_lights(node);
+  }
+
+  /// A light that lit the node and is no more, or has moved, changes its colour even if nothing else does.
+  void note_lost_lights(const PathNode& node) {
+    std::vector<bool> kept(change_.old_lights.size(), false);
+    for (std::uint32_t old : change_.old_light_index)
+      if (old != kNoNode) kept[old] = true;
+    for (std::size_t old = 0; old < kept.size(); ++old)
+      if (!kept[old] && shadow_state(node.lights, old) != ShadowState::facing_away) {
+        note(TreeChange::all);
+        ++counters_.culled.dropped;
+      }
+  }
+
+  /// A light of a node that is being updated.
+  struct LightUpdate {
+    std::uint32_t index;    // of the node
+    std::size_t light;      // place in the light order
+    ShadowSegment segment;  // to it
+    ShadowState before;     // as stored
+    std::size_t old;        // place in the stored light order
+  };
+
+  /// `touched`: may the selection cross the segment, or did it so before?
+  void update_light(LightUpdate l, bool touched) {
+    if (!grower_.gathers(l.index, l.light, l.segment)) {
+      if (l.before == ShadowState::facing_away) return;
+      note(TreeChange::all);
+      ++counters_.culled.dropped;
+      return;
+    }
+    if (l.before == ShadowState::facing_away) {  // a new or moved light, or a surface that gathered none
+      note(TreeChange::all);
+      grower_.trace_light(l.index, l.light, l.segment, counters_);
+      return;
+    }
+    const Ray ray{l.segment.origin, l.segment.direction, l.segment.t_max};
+    const auto tests = tests_.tests_shadow(l.before, touched, ray);
+    if (!tests.any())  // transparent surfaces of the selection may have stood there: the path names them
+      l.before == ShadowState::filtered ? update_filters(l, {}) : keep(l);
+    else if (grower_.grow().shadow_bits > 0)
+      update_counted(l, ray, tests);
+    else
+      update_flagged(l, ray);
+  }
+
+  /// Blocked or not, b = 0: an unblocked segment ends at the first opaque object of the selection.
+  void update_flagged(const LightUpdate& l, const Ray& ray) {
+    const bool blocked_now = !Tracer::passes(change_.shadows_after, ray, grower_.crossings_);
+    if (l.before == ShadowState::blocked) {
+      if (!blocked_now && !Tracer::passes(change_.shadows_before, ray, crossings_before_))
+        recount(l);
+      else
+        grower_.set_link(l.index, l.light, l.before);
+      return;
+    }
+    if (blocked_now) {
+      note(TreeChange::all);
+      grower_.set_link(l.index, l.light, ShadowState::blocked);
+      return;
+    }
+    update_filters(l, grower_.crossings_);
+  }
+
+  /// What of the selection a segment crosses. `passes_light`: of an object, as it was when the crossings were found.
+  template <class PassesLight>
+  void find_crossings(const Tracer::TopLevel& selection, const Ray& ray, const PassesLight& passes_light,
+                      SelectionCrossings& found) {
+    Tracer::blockers(selection, ray, grower_.crossings_);
+    for (const Crossing& crossing : grower_.crossings_)
+      (passes_light(crossing.object) ? found.transparent : found.opaque).push_back(crossing);
+  }
+
+  /// Shadow counters (paper 4.2): how many blockers there are follows from what of the selection stood there and what
+  /// stands there now.
+  void update_counted(const LightUpdate& l, const Ray& ray, const SegmentTests::Shadow& tests) {
+    then_.clear();
+    now_.clear();
+    if (tests.after)
+      find_crossings(
+          change_.shadows_after, ray, [&](ObjectId id) { return grower_.grow().scene.object(id).optics.passes_light; },
+          now_);
+    if (l.before != ShadowState::blocked && now_.opaque.empty()) {
+      update_filters(l, now_.transparent);
+      return;
+    }
+    const auto passed_light = [&](ObjectId id) {
+      return change_.before[change_.before_index[id.index()]].optics.passes_light;
+    };
+    if (tests.before) find_crossings(change_.shadows_before, ray, passed_light, then_);
+    if (then_.empty() && now_.empty())
+      keep(l);
+    else if (!has_new_line(l))
+      recount(l);
+    else
+      set_line(l);
+  }
+
+  /// What stands on the segment now, in line_; false if only a ray can tell.
+  bool has_new_line(const LightUpdate& l) {
+    const LightEntry& stored = stored_entries_[l.old];
+    find_steady(l);
+    const std::span<const Crossing> steady = has_ranges(l) ? std::span<const Crossing>(ranged_) : steady_surfaces(l);
+    if (steady.size() != steady_.size()) return false;
+    if (!line_.start(steady, then_.transparent, stored.counters)) return false;
+    const auto object_of = [](const Crossing& crossing) { return crossing.object.index(); };
+    if (l.before == ShadowState::blocked && !std::ranges::equal(line_.surfaces(), stored.objects, {}, object_of))
+      return false;
+    return line_.exchange(then_, now_);
+  }
+
+  /// The transparent surfaces of a stored segment that are as they were, as objects.
+  void find_steady(const LightUpdate& l) {
+    steady_.clear();
+    std::ranges::copy_if(stored_entries_[l.old].objects, std::back_inserter(steady_), [&](std::uint32_t object) {
+      return (change_.flags(ObjectId(object)) & RayChange::shadows) == 0;
+    });
+  }
+
+  /// Found again where they stand: their hits are not kept behind blockers. None where the levels of single objects are
+  /// not at hand.
+  std::span<const Crossing> steady_surfaces(const LightUpdate& l) {
+    if (steady_.empty() || grower_.grow().objects == nullptr) return {};
+    return object_rays_.filters(steady_, l.segment);
+  }
+
+  /// Without a ray: if the selection crosses the segment nowhere near their objects, any place there tells what is
+  /// before and what behind them. Such places are in ranged_, with no hits.
+  bool has_ranges(const LightUpdate& l) {
+    ranged_.clear();
+    float last = 0;
+    for (const std::uint32_t id : steady_) {
+      const RayObject& object = grower_.grow().scene.object(ObjectId(id));
+      const auto range =
+          range_in(world_bounds(object), object.condition, l.segment.origin, l.segment.direction, l.segment.t_max);
+      if (!range || is_selection_within(*range)) return false;
+      last = std::max(last, static_cast<float>(range->enter));  // in their order
+      ranged_.push_back({ObjectId(id), {}, last, object.key});
+    }
+    return true;
+  }
+  [[nodiscard]] bool is_selection_within(const SegmentRange& range) const {
+    // Twice the rounding to float is left on both sides.
+    const double enter = range.enter * (1 - 0x1p-22), leave = range.leave * (1 + 0x1p-22);
+    const auto is_within = [&](const Crossing& crossing) {
+      return static_cast<double>(crossing.t) >= enter && static_cast<double>(crossing.t) <= leave;
+    };
+    return std::ranges::any_of(then_.opaque, is_within) || std::ranges::any_of(then_.transparent, is_within) ||
+           std::ranges::any_of(now_.opaque, is_within) || std::ranges::any_of(now_.transparent, is_within);
+  }
+
+  void set_line(const LightUpdate& l) {
+    if (!line_.is_blocked()) {
+      note(TreeChange::all);
+      if (steady_.empty() || grower_.grow().objects != nullptr)
+        set_surfaces(l, steady_surfaces(l), now_.transparent);
+      else
+        grower_.trace_light(l.index, l.light, l.segment, counters_);
+      return;
+    }
+    const std::span<const std::uint32_t> entry = line_.entry();
+    if (l.before != ShadowState::blocked)
+      note(TreeChange::all);
+    else if (!std::ranges::equal(entry, stored_entries_[l.old].words))
+      note(TreeChange::counters);
+    grower_.set_blocked(l.index, l.light, entry);
+  }
+
+  void recount(const LightUpdate& l) {
+    grower_.trace_light(l.index, l.light, l.segment, counters_);
+    const TreeBlock& block = grower_.block();
+    const LightLink& link = block.lights[block.nodes[l.index].first_light + l.light];
+    if (link.state != l.before || l.before == ShadowState::filtered)
+      note(TreeChange::all);
+    else if (has_entry(l.before, grower_.grow().shadow_bits) &&
+             !std::ranges::equal(block.blocker_entry(link), stored_entries_[l.old].words))
+      note(TreeChange::counters);
+  }
+
+  /// No opaque blockers before or now: takes the selection's filters out and puts those it has now in.
+  void update_filters(const LightUpdate& l, std::span<const Crossing> now) {
+    std::vector<FilterNode>& filters = stored_filters_[l.old];
+    if (l.before != ShadowState::filtered) filters.clear();
+    const std::size_t removed = std::erase_if(
+        filters, [&](const FilterNode& f) { return (change_.flags(f.object) & RayChange::shadows) != 0; });
+    if (removed == 0 && now.empty()) {
+      keep(l);
+      return;
+    }
+    note(TreeChange::all);
+    if (now.empty()) {
+      grower_.set_filters(l.index, l.light, l.segment, filters);
+      return;
+    }
+    steady_.clear();
+    for (const FilterNode& filter : filters) steady_.push_back(filter.object.index());
+    const std::span<const Crossing> steady = steady_surfaces(l);
+    if (steady.size() == filters.size())
+      set_surfaces(l, steady, now);
+    else
+      grower_.trace_light(l.index, l.light, l.segment, counters_);  // the order is not known
+  }
+
+  void set_surfaces(const LightUpdate& l, std::span<const Crossing> steady, std::span<const Crossing> now) {
+    merged_.clear();
+    std::ranges::merge(steady, now, std::back_inserter(merged_), {}, place_on_segment, place_on_segment);
+    grower_.set_crossings(l.index, l.light, l.segment, merged_);
+  }
+
+  void keep(const LightUpdate& l) {
+    if (!has_entry(l.before, grower_.grow().shadow_bits))
+      grower_.set_link(l.index, l.light, l.before);
+    else if (l.before == ShadowState::blocked)
+      grower_.set_blocked(l.index, l.light, stored_entries_[l.old].words);
+    else
+      grower_.set_filters(l.index, l.light, l.segment, stored_filters_[l.old]);
+  }
+
+  void update_children(std::uint32_t index, const PathNode& node, History history) {
+    const Spawned now = grower_.spawned(index);
+    if (now.cut_mask != node.flags >> kCutShift) note(TreeChange::all);
+    const RayNode parent = grower_.block().nodes[index];
+    const bool respawns = (change_.flags(node.object()) & RayChange::respawns) != 0;
+    Spawned before;
+    if (respawns)
+      before = spawn(parent, change_.before[change_.before_index[node.object().index()]], grower_.grow().max_depth);
+    for (std::size_t b = 0; b < kBranches; ++b) {
+      const bool is_stored = node.has_child(static_cast<Branch>(b)), is_now = (now.mask >> b & 1U) != 0;
+      if (is_stored != is_now) note(TreeChange::all);
+      if (!is_now) {
+        if (is_stored) counters_.culled.dropped += skip_tree(stored_);
+        continue;
+      }
+      const SpawnedRay& ray = now.rays[b];
+      const bool same_ray = !respawns || ((before.mask >> b & 1U) != 0 && before.rays[b].is_same_way(ray));
+      std::uint32_t child = kNoNode;
+      if (is_stored && same_ray) {
+        child = update(ray, index, child_of(history, static_cast<Branch>(b)));
+      } else {
+        if (is_stored) counters_.culled.dropped += skip_tree(stored_);
+        note(TreeChange::all);
+        child = trace(ray, index);
+      }
+      grower_.block().nodes[index].child[b] = child;
+    }
+  }
+
+  Grower grower_;
+  const RayChange& change_;
+  const Touches* touches_;  // null: any segment may be touched
+  StoredTree stored_;
+  GrowCounters& counters_;
+  SegmentTests tests_;
+  TreeChange what_ = TreeChange::none;
+  std::vector<std::vector<FilterNode>> stored_filters_;  // by old light
+  std::vector<LightEntry> stored_entries_;               // by old light
+  std::vector<Crossing> crossings_before_, merged_, ranged_;
+  SelectionCrossings then_, now_;  // of the segment at hand
+  ShadowLine line_;
+  ObjectRays object_rays_;
+  std::vector<std::uint32_t> steady_;  // objects of its transparent surfaces beside the selection's
+};
+
+}  // namespace
+
+std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const Touches* touches,
+                          const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
+                          GrowCounters& counters, TreeChange& what) {
+  Updater updater(grow, change, touches, sample, stored, block, counters);
+  const std::uint32_t root = updater.update(primary, kNoNode, kPrimary);
+  what = updater.what();
+  return root;
+}
+
+}  // namespace relook
