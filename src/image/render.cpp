@@ -13,6 +13,7 @@
 #include "image/sampling.h"
 #include "region/cell_tunnels.h"
 #include "trace/tree/grow.h"
+#include "trace/tree/pack.h"
 
 namespace relook {
 namespace {

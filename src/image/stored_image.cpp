@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/system/memory.h"
 #include "image/sampling.h"
+#include "trace/tree/pack.h"
 
 namespace relook {
 namespace {

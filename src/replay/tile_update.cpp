@@ -7,6 +7,7 @@
 #include "cache/residency/residency.h"
 #include "image/sampling.h"
 #include "trace/tree/find_hits.h"
+#include "trace/tree/pack.h"
 #include "trace/tree/probe.h"
 
 namespace relook {

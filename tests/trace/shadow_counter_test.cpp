@@ -12,6 +12,7 @@
 #include "replay/replay.h"
 #include "test_scenes.h"
 #include "trace/tree/grow.h"
+#include "trace/tree/shadow_segment.h"
 #include "tree_reader.h"
 
 namespace relook {

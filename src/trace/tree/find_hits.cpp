@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "trace/tree/shadow_segment.h"
+#include "trace/tree/spawn.h"
+
 namespace relook {
 
 HitFinder::HitFinder(const GrowScene& grow, const RayChange& change, GrowCounters& counters)

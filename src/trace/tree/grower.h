@@ -10,6 +10,8 @@
 
 #include "trace/tree/grow.h"
 #include "trace/tree/shadow_counter.h"
+#include "trace/tree/shadow_segment.h"
+#include "trace/tree/spawn.h"
 
 namespace relook {
 

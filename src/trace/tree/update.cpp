@@ -5,6 +5,7 @@
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
 #include "trace/tree/shadow_line.h"
+#include "trace/tree/spawn.h"
 
 namespace relook {
 namespace {
