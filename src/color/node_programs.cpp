@@ -30,8 +30,7 @@ void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState st
 NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node) {
   if (node.object.is_none()) return {};
   NodeKey key = surface_key(scene, node.object, node.point.inside);
-  for (std::size_t b = 0; b < kBranches; ++b)
-    if (node.child[b] != kNoNode) key.children = static_cast<std::uint8_t>(key.children | 1U << b);
+  key.children = children_of(node);
   const auto& order = scene.scene().light_order;
   for (std::uint32_t light = 0; light < order.size(); ++light)
     note_light(key, order[light], light, block.lights[node.first_light + light].state);
@@ -51,7 +50,7 @@ std::uint32_t NodePrograms::number(const TreeBlock& block, const RayNode& node) 
     });
   Signature signature = signature_of(block, node, 0);
   if (!node.object.is_none() && lamp_place_ < order.size())
-    signature.lights = light_bits(block.lights[node.first_light + lamp_place_].state);
+    signature.add_light(0, block.lights[node.first_light + lamp_place_].state);
   return number(signature, [&] { return restricted(key_of(scene_, block, node), part_); });
 }
 
@@ -94,7 +93,7 @@ void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std
       keys.emplace_back();
       continue;
     }
-    NodeKey key = surface_key(scene, node.object(), node.inside());
+    NodeKey key = surface_key(scene, node.object, node.inside());
     key.children = node.branches();
     EntryReader entries(node.entries, shadow_bits);
     for (std::uint32_t light = 0; light < lights.size(); ++light) {

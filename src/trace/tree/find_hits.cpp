@@ -30,13 +30,13 @@ void HitFinder::find(const SpawnedRay& primary, const PathCursor& path, std::vec
 void HitFinder::find_node(const SpawnedRay& before, const SpawnedRay& now) {
   const PathNode stored = cursor_.next();
   if (stored.is_miss()) return;
-  if (has_flag(stored.object(), RayChange::moved)) {
+  if (has_flag(stored.object, RayChange::moved)) {
     append_empty(stored);
     skip_trees(stored.children());
     return;
   }
   RayNode node(kNoNode, 0, before);
-  node.object = stored.object();
+  node.object = stored.object;
   const Meeting meeting = rays_.meeting(node.object, ray_of(before));  // what it goes on behind was found before
   node.hit = meeting.hit;
   node.t = meeting.t;
@@ -73,7 +73,7 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
   const RayObject& then = respawns ? change_.before[change_.before_index[node.object.index()]] : object;
   if (!then.optics.spawns() && stored.children() == 0) return;
   const Spawned old = spawn(node, then, g_.max_depth);
-  if (old.mask != stored.branches()) refuse_trees();
+  if (old.branches != stored.branches()) refuse_trees();
   Spawned rays = old;
   if (respawns || now.fresnel_product != node.ray.fresnel_product) {
     RayNode as_now = node;
@@ -81,10 +81,11 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
     rays = spawn(as_now, object, g_.max_depth);
   }
   for (std::size_t b = 0; b < kBranches; ++b) {
-    if (!stored.has_child(static_cast<Branch>(b))) continue;
-    const bool goes_as_before = (rays.mask >> b & 1U) != 0 && rays.rays[b].is_same_way(old.rays[b]);
+    const auto branch = static_cast<Branch>(b);
+    if (!stored.has_child(branch)) continue;
+    const bool goes_as_before = rays.branches.has(branch) && rays.ray(branch).is_same_way(old.ray(branch));
     if (goes_as_before)
-      find_node(old.rays[b], rays.rays[b]);
+      find_node(old.ray(branch), rays.ray(branch));
     else
       skip_trees(1);
   }

@@ -55,17 +55,18 @@ class Grower {
   Spawned spawned(std::uint32_t index) {
     RayNode& node = b_.nodes[index];
     const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
-    node.cut_mask = rays.cut_mask;
+    node.cut = rays.cut;
     return rays;
   }
 
   /// Calls grow_child(branch, ray) -> index for each spawned ray, in order.
   template <class GrowChild>
   void for_each_child(std::uint32_t index, const Spawned& rays, const GrowChild& grow_child) {
-    for (std::size_t branch = 0; branch < kBranches; ++branch) {
-      if ((rays.mask >> branch & 1U) == 0) continue;
-      const std::uint32_t child = grow_child(static_cast<Branch>(branch), rays.rays[branch]);
-      b_.nodes[index].child[branch] = child;
+    for (std::size_t b = 0; b < kBranches; ++b) {
+      const auto branch = static_cast<Branch>(b);
+      if (!rays.branches.has(branch)) continue;
+      const std::uint32_t child = grow_child(branch, rays.ray(branch));
+      b_.nodes[index].child[b] = child;
     }
   }
 

@@ -13,19 +13,17 @@ void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, 
       words.push_back(PathTable::kMissWord);
       continue;
     }
-    std::uint8_t branches = 0;
-    for (std::size_t b = 0; b < kBranches; ++b)
-      if (node.child[b] != kNoNode) branches = static_cast<std::uint8_t>(branches | 1U << b);
-    const std::uint32_t flags = branch_flags(branches) | (node.point.inside ? kInsideFlag : 0U) |
-                                static_cast<std::uint32_t>(node.cut_mask) << kCutShift;
     words.push_back(node.object.index());
-    words.push_back(flags);
+    words.push_back(NodeFlags(children_of(node), node.point.inside, node.cut).word());
     hits.push_back(node.hit);
     const std::size_t states = words.size();
-    words.resize(states + (layout.lights + 15) / 16);
+    words.resize(states + LightStates::words_of(layout.lights));
     for (std::size_t light = 0; light < layout.lights; ++light) {
       const LightLink& link = block.lights[node.first_light + light];
-      words[states + light / 16] |= static_cast<std::uint32_t>(link.state) << (2 * (light % 16));
+      std::uint32_t& word = words[states + light / LightStates::kLights];
+      LightStates with(word);
+      with.set(light % LightStates::kLights, link.state);
+      word = with.word();
       if (!has_entry(link.state, layout.shadow_bits)) continue;
       if (link.state == ShadowState::blocked) {
         const auto entry = block.blocker_entry(link);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "trace/tree/ray_path.h"
 #include "trace/tree/tree_block.h"
 
 namespace relook {

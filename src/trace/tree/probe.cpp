@@ -29,13 +29,13 @@ class Prober {
     }
     RayNode node(kNoNode, 0, ray);
     if (!stored.is_miss()) {
-      node.object = stored.object();
+      node.object = stored.object;
       node.hit = hits.front();
       complete(node, g_.scene.object(node.object));
     }
     if (meets(node, touch->ray)) return true;
     if (stored.is_miss()) return false;
-    if ((touch->open | touch->blocked) == 0)
+    if ((touch->open | touch->blocked).empty())
       counters_.culled.tunnels += stored.shadow_segments;
     else if (lights_change(node, stored, *touch))
       return true;
@@ -76,7 +76,7 @@ class Prober {
     const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
-      if (stored.has_child(branch) && probe(rays.rays[b], child_of(history, branch))) return true;
+      if (stored.has_child(branch) && probe(rays.ray(branch), history.child(branch))) return true;
     }
     return false;
   }
@@ -94,7 +94,7 @@ class Prober {
 
 bool probe_tree(const GrowScene& grow, const RayChange& change, const Touches& touches, const SpawnedRay& primary,
                 StoredTree stored, GrowCounters& counters) {
-  return Prober(grow, change, touches, stored, counters).probe(primary, kPrimary);
+  return Prober(grow, change, touches, stored, counters).probe(primary, History::primary());
 }
 
 }  // namespace relook

@@ -79,10 +79,9 @@ class Spawner {
   /// Null if there is none.
   SpawnedRay* add(Branch branch, float fresnel) {
     if (!may_spawn_) return nullptr;
-    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(branch));
     const float product = node_.ray.fresnel_product * fresnel;
     if (product < kFresnelCut) {
-      spawned_.cut_mask |= bit;
+      spawned_.cut.add(branch);
       return nullptr;
     }
     SpawnedRay& ray = spawned_.rays[static_cast<std::size_t>(branch)];
@@ -91,7 +90,7 @@ class Spawner {
     ray.generation = static_cast<std::uint8_t>(node_.ray.generation + 1);
     ray.branch = branch;
     ray.channel = channel_of(branch, node_.ray.channel);
-    spawned_.mask |= bit;
+    spawned_.branches.add(branch);
     return &ray;
   }
 

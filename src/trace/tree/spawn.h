@@ -12,8 +12,10 @@ namespace relook {
 /// its object and the options.
 struct Spawned {
   std::array<SpawnedRay, kBranches> rays;
-  std::uint8_t mask = 0;  // bit b: rays[b] is there
-  std::uint8_t cut_mask = 0;
+  BranchSet branches;  // whose rays are there
+  BranchSet cut;
+
+  [[nodiscard]] const SpawnedRay& ray(Branch branch) const { return rays[static_cast<std::size_t>(branch)]; }
 };
 [[nodiscard]] Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth);
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "trace/tracer.h"
-#include "trace/tree/ray_path.h"
+#include "trace/tree/branch.h"
 
 namespace relook {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trace/surface.h"
+#include "trace/tree/path_words.h"
 #include "trace/tree/spawned_ray.h"
 
 namespace relook {
@@ -26,13 +27,20 @@ struct RayNode {
   ObjectId object;       // none: miss
   Hit hit;
   SpawnedRay ray;                                     // that led here
-  std::uint8_t cut_mask = 0;                          // branches that the Fresnel cut-off removed
+  BranchSet cut;                                      // branches that the Fresnel cut-off removed
   float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
   float length = 0;                                   // metres from the ray's origin
   float footprint = 0;                                // ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
 };
+
+[[nodiscard]] inline BranchSet children_of(const RayNode& node) {
+  BranchSet children;
+  for (std::size_t b = 0; b < kBranches; ++b)
+    if (node.child[b] != kNoNode) children.add(static_cast<Branch>(b));
+  return children;
+}
 
 /// What stands between a node and one light.
 struct LightLink {
