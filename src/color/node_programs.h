@@ -10,11 +10,11 @@
 
 namespace relook {
 
-[[nodiscard]] NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside);
+[[nodiscard]] NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside);
 /// The side is left open: it depends on the hit, not on the path.
-[[nodiscard]] NodeKey filter_key(const RayScene& scene, ObjectId id);
+[[nodiscard]] NodeKey filter_key(const ColorScene& scene, ObjectId id);
 void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state);
-[[nodiscard]] NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node);
+[[nodiscard]] NodeKey key_of(const ColorScene& scene, const TreeBlock& block, const RayNode& node);
 
 /// What of a surface, beside its material, its programs differ by.
 struct SurfaceForm {
@@ -54,7 +54,7 @@ struct SignatureHash {
 /// Gives nodes dense program numbers within one block. Nodes, not filters, are restricted to a part of their colours.
 class NodePrograms {
  public:
-  NodePrograms(const RayScene& scene, ProgramTable& table, const ColorPart& part = {})
+  NodePrograms(const ColorScene& scene, ProgramTable& table, const ColorPart& part = {})
       : scene_(scene), table_(table), part_(part), lamp_place_(place_of_lamp()) {}
 
   std::uint32_t number(const TreeBlock& block, const RayNode& node);
@@ -94,7 +94,7 @@ class NodePrograms {
     return last_number_;
   }
 
-  const RayScene& scene_;
+  const ColorScene& scene_;
   ProgramTable& table_;
   ColorPart part_;
   std::size_t lamp_place_;  // of the part's only lamp in the light order

@@ -107,7 +107,7 @@ void mark_ancestors(Touches& touches) {
 
 void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, std::uint32_t root,
              std::vector<History>& scratch) {
-  const std::size_t lights = scene.scene().light_order.size();
+  const std::size_t lights = scene.light_order().size();
   const std::uint32_t sample = block.nodes[root].sample;
   scratch.clear();
   for (std::uint32_t i = root; i < block.nodes.size() && block.nodes[i].sample == sample; ++i) {
@@ -175,13 +175,24 @@ void enclose(Sections& tunnel, std::span<const TunnelSection> other) {
   }
 }
 
+namespace {
+
+LightEnd end_of(const RayLight& light) {
+  const bool directional = light.kind == LightKind::directional;
+  return {directional, Box(directional ? -light.direction : light.position)};
+}
+
+}  // namespace
+
+std::vector<LightEnd> light_ends(const RayScene& scene) {
+  std::vector<LightEnd> ends;
+  for (std::size_t place = 0; place < scene.light_order().size(); ++place) ends.push_back(end_of(scene.light(place)));
+  return ends;
+}
+
 std::vector<LightEnd> light_ends(const Scene& scene) {
   std::vector<LightEnd> ends;
-  for (LightId id : scene.light_order) {
-    const Light& light = scene.light(id);
-    const bool directional = light.kind == LightKind::directional;
-    ends.push_back({directional, Box(directional ? -light.direction : light.position)});
-  }
+  for (const LightId id : scene.light_order) ends.push_back(end_of(scene.light(id)));
   return ends;
 }
 

@@ -38,6 +38,7 @@ struct LightEnd {
   bool directional = false;
   Box end;
 };
+[[nodiscard]] std::vector<LightEnd> light_ends(const RayScene& scene);
 [[nodiscard]] std::vector<LightEnd> light_ends(const Scene& scene);
 
 /// Of all shafts of a tunnel together, those of rays that met nothing as far as the tunnel's own extent: in square

@@ -61,7 +61,7 @@ class Compressor {
   }
   template <class Visit>
   void for_each_tint(const RayNode& node, const Visit& visit) const {
-    const std::size_t lights = c_.scene.scene().light_order.size();
+    const std::size_t lights = c_.scene.light_order().size();
     for (std::uint32_t order = 0; order < lights; ++order)
       if (const LightLink& link = block_.lights[node.first_light + order]; link.state == ShadowState::filtered)
         visit(order, link);
@@ -188,7 +188,7 @@ class Compressor {
     }
   }
   void note_tints(CompressedBatch& batch, WideLightSet tints, const std::vector<std::uint32_t>& indices) const {
-    const std::size_t lights = c_.scene.scene().light_order.size();
+    const std::size_t lights = c_.scene.light_order().size();
     for (std::uint32_t order = 0; order < lights; ++order) {
       if (!tints.has(order)) continue;
       auto& [light, links] = batch.tints.emplace_back();

@@ -48,7 +48,6 @@ void HitFinder::find_node(const SpawnedRay& before, const SpawnedRay& now) {
 
 void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
   EntryReader entries(stored.entries, g_.shadow_bits);
-  const Scene& scene = g_.scene.scene();
   const auto is_steady = [&](std::uint32_t object) { return !has_flag(ObjectId(object), RayChange::shadows); };
   for (std::size_t old = 0; old < new_light_.size(); ++old) {
     const ShadowState state = shadow_state(stored.lights, old);
@@ -60,7 +59,7 @@ void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
     steady_.clear();
     std::ranges::copy_if(entry.objects, std::back_inserter(steady_), is_steady);
     if (steady_.empty()) continue;
-    const Light& light = scene.light(scene.light_order[new_light_[old]]);
+    const RayLight& light = g_.scene.light(new_light_[old]);
     auto crossing = rays_.filters(steady_, shadow_segment(node.point, light)).begin();
     for (std::size_t i = 0; i < entry.objects.size(); ++i)
       if (is_steady(entry.objects[i])) (*hits_)[first + i] = (crossing++)->hit;

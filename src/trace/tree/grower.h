@@ -99,7 +99,7 @@ class Grower {
   bool gathers(std::uint32_t index, std::size_t light, ShadowSegment& segment) const {
     const RayNode& node = b_.nodes[index];
     if (is_interface_only(g_.scene.object(node.object), node.point)) return false;
-    segment = shadow_segment(node.point, g_.scene.scene().light(lights()[light]));
+    segment = shadow_segment(node.point, g_.scene.light(light));
     return segment.faces;
   }
 
@@ -148,7 +148,7 @@ class Grower {
     for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }
 
-  [[nodiscard]] const std::vector<LightId>& lights() const { return g_.scene.scene().light_order; }
+  [[nodiscard]] const std::vector<LightId>& lights() const { return g_.scene.light_order(); }
   [[nodiscard]] TreeBlock& block() { return b_; }
   [[nodiscard]] const GrowScene& grow() const { return g_; }
   std::vector<Crossing> crossings_;

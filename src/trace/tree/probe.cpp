@@ -55,12 +55,12 @@ class Prober {
   }
 
   [[nodiscard]] bool lights_change(const RayNode& node, const PathNode& stored, const Touch& touch) {
-    const auto& lights = g_.scene.scene().light_order;
-    for (std::size_t light = 0; light < lights.size(); ++light) {
+    const std::size_t lights = g_.scene.light_order().size();
+    for (std::size_t light = 0; light < lights; ++light) {
       const ShadowState state = shadow_state(stored.lights, light);
       if (state == ShadowState::facing_away) continue;
       const bool touched = touch.touches(state == ShadowState::blocked, light);
-      const ShadowSegment segment = shadow_segment(node.point, g_.scene.scene().light(lights[light]));
+      const ShadowSegment segment = shadow_segment(node.point, g_.scene.light(light));
       const Ray ray{segment.origin, segment.direction, segment.t_max};
       const auto tests = tests_.tests_shadow(state, touched, ray);
       if (tests.before && crosses(change_.shadows_before, ray)) return true;

@@ -4,7 +4,7 @@
 
 namespace relook {
 
-ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light) {
+ShadowSegment shadow_segment(const SurfacePoint& point, const RayLight& light) {
   ShadowSegment segment;
   const bool directional = light.kind == LightKind::directional;
   const Direction to_light = directional ? -light.direction : light.position - point.position;

@@ -14,7 +14,7 @@ struct ShadowSegment {
   Direction direction{0, 0, 1};
   float t_max = 1;
 };
-[[nodiscard]] ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light);
+[[nodiscard]] ShadowSegment shadow_segment(const SurfacePoint& point, const RayLight& light);
 /// True where no light is gathered and no segments are kept: the inner side of a volume.
 [[nodiscard]] inline bool is_interface_only(const RayObject& object, const SurfacePoint& point) {
   return object.optics.volume && point.inside;
