@@ -37,7 +37,7 @@ class StoredImage {
   [[nodiscard]] const ImageRegions& regions() const { return regions_; }
   [[nodiscard]] Residency& residency() { return residency_; }
   /// The image side of a search for paths. `rays`: after the change; outlives it, as does this.
-  [[nodiscard]] PathSearch search(const RayScene& rays) const {
+  [[nodiscard]] PathSearch search(const ColorScene& rays) const {
     return {rays, image_.paths, index_, lights_, image_.view.shadow_bits, classes_};
   }
   [[nodiscard]] std::uint64_t segments() const { return segments_; }

@@ -25,7 +25,7 @@ struct PathTasks {
 
 /// The image side of a search.
 struct PathSearch {
-  const RayScene& rays;  // after the change
+  const ColorScene& rays;  // after the change
   const PathTable& paths;
   const PathIndex& index;              // of `paths`
   const std::vector<LightId>& lights;  // light order of the paths

@@ -21,7 +21,7 @@ class TileCompressor {
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
-        primaries_(pass.grow.scene.scene().camera, pass.image.view),
+        primaries_(pass.grow.scene.camera(), pass.image.view),
         image_(image),
         shader_(tools.shader),
         block_(tools.block) {}
@@ -132,7 +132,7 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   std::vector<bool> grouped_tiles;
   if (!found.works.empty() && known_leaves == nullptr)
     grouped_tiles = tiles_with_tasks(stored_.regions(), found.tasks, result.counters.by_groups);
-  const UpdatePass pass{image,           stored_.lights(),   grow,    change,     found.tasks,   stored_.classes(),
+  const UpdatePass pass{image,           stored_.lights(),   rays_,   grow,       change,        found.tasks,   stored_.classes(),
                         stored_.index(), stored_.regions(),  nullptr, near_tiles, grouped_tiles, known_leaves,
                         programs_,       stored_.residency()};
   parallel_for(found.works.size(), [&](std::size_t tile) {

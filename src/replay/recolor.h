@@ -13,7 +13,7 @@ namespace relook {
 /// Works on the parts of a replay, which outlive it.
 class Recolorer {
  public:
-  Recolorer(StoredImage& stored, const RayScene& rays, const ObjectLevels& objects, ProgramTable& programs,
+  Recolorer(StoredImage& stored, const ColorScene& rays, const ObjectLevels& objects, ProgramTable& programs,
             KeptSelection& selection, CompressedEdits& compressed)
       : stored_(stored),
         rays_(rays),
@@ -41,7 +41,7 @@ class Recolorer {
   void run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch);
 
   StoredImage& stored_;
-  const RayScene& rays_;
+  const ColorScene& rays_;
   const ObjectLevels& objects_;
   ProgramTable& programs_;
   KeptSelection& selection_;

@@ -23,7 +23,7 @@ std::size_t common(const std::vector<std::uint32_t>& a, const std::vector<std::u
 
 struct Replayer::Impl {
   SceneState state;
-  RayScene rays;
+  ColorScene rays;  // of the state
   std::unique_ptr<Residency> owned_residency;
   Residency& residency{*owned_residency};
   StoredImage stored;
@@ -100,7 +100,7 @@ struct Replayer::Impl {
     }
     const GrowScene scene = grow(scene_level);
     ChangeBoxes boxes;
-    const std::vector<LightEnd> ends = light_ends(state.scene());
+    const std::vector<LightEnd> ends = light_ends(rays);
     const bool uses_tunnels =
         stored.regions().may_have_tunnels(image()) && change.touches_segments() && !change.rays.lights_changed;
     if (change.touches_segments()) {
@@ -116,6 +116,7 @@ struct Replayer::Impl {
       grouped_tiles = tiles_with_tasks(stored.regions(), tasks, result.counters.by_groups);
     const UpdatePass pass{image(),
                           stored.lights(),
+                          rays,
                           scene,
                           change,
                           tasks,
@@ -205,10 +206,10 @@ struct Replayer::Impl {
     StepChange change = find_change(rays, state.scene(), delta, stored.lights());
     if (change.touches_segments() && !change.rays.lights_changed && !stored.regions().has_tunnels())
       stored.build_tunnels(grow(nullptr));
-    rays.update(state.scene(), delta);
+    rays = ColorScene(rays.after(state.scene(), delta), state.scene());
     const std::vector<ObjectId> changed = selection_of(change);
     if (level) level->note_changed(changed);
-    objects.note_changed(changed);
+    objects.go_on(rays, changed);
     forget_programs(change);
     result.counters.samples_total = stored.samples();
     return change;

@@ -7,6 +7,7 @@
 #include "cache/residency/residency.h"
 #include "image/sampling.h"
 #include "trace/tree/find_hits.h"
+#include "trace/tree/pack.h"
 #include "trace/tree/probe.h"
 
 namespace relook {
@@ -18,7 +19,7 @@ class TileUpdater {
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
-        primaries_(pass.grow.scene.scene().camera, pass.image.view),
+        primaries_(pass.grow.scene.camera(), pass.image.view),
         shader_(tools.shader),
         block_(tools.block),
         finder_(pass.grow, pass.change.rays, result_.counters) {
@@ -177,7 +178,7 @@ TileWork find_tile_work(const UpdatePass& pass, std::size_t tile) {
 }
 
 TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<TileTools>& tools) {
-  const auto own = tools.take([&] { return std::make_unique<TileTools>(pass.grow.scene, pass.programs); });
+  const auto own = tools.take([&] { return std::make_unique<TileTools>(pass.scene, pass.programs); });
   return TileUpdater(pass, tile, *own).update(work);
 }
 

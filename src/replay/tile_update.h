@@ -43,7 +43,8 @@ struct TileUpdate {
 struct UpdatePass {
   const Image& image;
   const std::vector<LightId>& lights;  // light order of the image's paths
-  const GrowScene& grow;               // the scene after the change
+  const ColorScene& scene;             // after the change
+  const GrowScene& grow;               // the same
   const StepChange& change;
   const PathTasks& tasks;
   const PathClasses& classes;
@@ -60,7 +61,7 @@ struct UpdatePass {
 
 /// What work on one tile after another needs; one per thread.
 struct TileTools {
-  TileTools(const RayScene& scene, ProgramTable& programs) : shader(scene, programs) {}
+  TileTools(const ColorScene& scene, ProgramTable& programs) : shader(scene, programs) {}
 
   Shader shader;
   TreeBlock block;  // empty between tiles; keeps its memory
