@@ -15,18 +15,18 @@ namespace {
 /// Trees are compressed in blocks of about this many: long runs for evaluation, few enough to stay in the cache.
 constexpr std::size_t kBlockSamples = 4096;
 
-class TileCompressor {
+class TreeCompressor {
  public:
-  TileCompressor(const UpdatePass& pass, std::size_t tile, CompressedImage& image, TileTools& tools)
+  TreeCompressor(const UpdatePass& pass, std::size_t tile, ColorTreeSet& set, TileTools& tools)
       : p_(pass),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         primaries_(pass.grow.scene.scene().camera, pass.image.view),
-        image_(image),
+        set_(set),
         shader_(tools.shader),
         block_(tools.block) {}
 
-  CompressedTile compress(const Leaves& leaves) {
+  TileColorTrees compress(const Leaves& leaves) {
     const auto start = std::chrono::steady_clock::now();
     for_each_sample(rect_, p_.image.view, leaves, [&](std::uint32_t sample, std::uint32_t) {
       const PathId path = trees_.paths[sample];
@@ -48,7 +48,7 @@ class TileCompressor {
  private:
   void flush() {
     if (roots_.empty()) return;
-    CompressedBlock block = shader_.compress(block_, roots_, image_.parameters, image_.splits);
+    CompressedBlock block = shader_.compress(block_, roots_, set_.parameters, set_.splits);
     for (const std::uint32_t root : block.roots) tile_.samples.push_back(block_.nodes[roots_[root]].sample);
     tile_.bytes += block.bytes();
     if (!block.roots.empty()) tile_.blocks.push_back(std::move(block));
@@ -60,16 +60,16 @@ class TileCompressor {
   const TileTrees& trees_;
   TileRect rect_;
   PrimaryRays primaries_;
-  CompressedImage& image_;
+  ColorTreeSet& set_;
   Shader& shader_;
   TreeBlock& block_;
   std::vector<std::uint32_t> roots_;
   GrowCounters counters_;
-  CompressedTile tile_;
+  TileColorTrees tile_;
 };
 
 /// Evaluates a valid tile and brings colours and frame up to date: the mask of its changed pixels.
-TileMask recolor_tile(const CompressedTile& compressed, std::size_t tile, const Scene& scene, StoredImage& stored,
+TileMask recolor_tile(const TileColorTrees& compressed, std::size_t tile, const Scene& scene, StoredImage& stored,
                       ColorMemory& memory) {
   const auto lease = stored.residency().use(PieceKind::sample_colors, tile);
   std::span<const std::uint32_t> samples(compressed.samples);
@@ -106,7 +106,7 @@ struct Recolorer::Search {
   std::vector<TileWork> works;  // by tile
 };
 
-Recolorer::Search Recolorer::search(const StepChange& change, const CompressedImage& kept, StepResult& result,
+Recolorer::Search Recolorer::search(const StepChange& change, const ColorTreeSet& kept, StepResult& result,
                                     StopWatch& watch) {
   Search search;
   if (!kept.is_valid()) {
@@ -117,13 +117,13 @@ Recolorer::Search Recolorer::search(const StepChange& change, const CompressedIm
   return search;
 }
 
-void Recolorer::expect(const CompressedImage& kept, std::size_t tile) const {
+void Recolorer::expect(const ColorTreeSet& kept, std::size_t tile) const {
   if (!kept.tiles[tile].is_valid) stored_.residency().expect(PieceKind::ray_trees, tile);
   stored_.residency().expect(PieceKind::sample_colors, tile);
 }
 
 void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch) {
-  CompressedImage& kept = compressed_.of(change.colors.parameters, stored_.residency().change());
+  ColorTreeSet& kept = compressed_.of(change.colors.parameters, stored_.residency().change());
   const std::vector<Leaves>* known_leaves = selection_.leaves(change);
   Search found = search(change, kept, result, watch);
   const Image& image = stored_.image();
@@ -160,12 +160,12 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   for (std::size_t i = 0; i < std::min(kTilesAhead, tiles.size()); ++i) expect(kept, tiles[i]);
   parallel_for(tiles.size(), [&](std::size_t i) {
     if (i + kTilesAhead < tiles.size()) expect(kept, tiles[i + kTilesAhead]);
-    CompressedTile& tile = kept.tiles[tiles[i]];
+    TileColorTrees& tile = kept.tiles[tiles[i]];
     if (!tile.is_valid) {
       const auto own = tools.take([&] { return std::make_unique<TileTools>(rays_, programs_); });
       const auto lease = stored_.residency().use(PieceKind::ray_trees, tiles[i]);
       grown[i] = stored_.bring_back_hits(tiles[i], found.works[tiles[i]].leaves, found.tasks, grow);
-      TileCompressor compressor(pass, tiles[i], kept, *own);
+      TreeCompressor compressor(pass, tiles[i], kept, *own);
       compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
       grown[i] += compressor.counters();
       if (std::exchange((*kept.were_built)[tiles[i]], std::uint8_t{1}) != 0)

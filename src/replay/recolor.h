@@ -3,7 +3,7 @@
 #pragma once
 #include "base/pool.h"
 #include "image/stored_image.h"
-#include "replay/compressed_edits.h"
+#include "replay/color_tree_store.h"
 #include "replay/kept_selection.h"
 #include "replay/step_result.h"
 #include "replay/tile_update.h"
@@ -14,7 +14,7 @@ namespace relook {
 class Recolorer {
  public:
   Recolorer(StoredImage& stored, const RayScene& rays, const ObjectLevels& objects, ProgramTable& programs,
-            KeptSelection& selection, CompressedEdits& compressed)
+            KeptSelection& selection, ColorTreeStore& compressed)
       : stored_(stored),
         rays_(rays),
         objects_(objects),
@@ -34,10 +34,10 @@ class Recolorer {
 
  private:
   struct Search;
-  [[nodiscard]] Search search(const StepChange& change, const CompressedImage& kept, StepResult& result,
+  [[nodiscard]] Search search(const StepChange& change, const ColorTreeSet& kept, StepResult& result,
                               StopWatch& watch);
   /// The tile's turn comes soon.
-  void expect(const CompressedImage& kept, std::size_t tile) const;
+  void expect(const ColorTreeSet& kept, std::size_t tile) const;
   void run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch);
 
   StoredImage& stored_;
@@ -45,7 +45,7 @@ class Recolorer {
   const ObjectLevels& objects_;
   ProgramTable& programs_;
   KeptSelection& selection_;
-  CompressedEdits& compressed_;
+  ColorTreeStore& compressed_;
   Pool<ColorMemory> memory_;
 };
 

@@ -30,7 +30,7 @@ struct Replayer::Impl {
   ObjectLevels objects{rays, monitor()};
   ProgramTable programs;
   KeptSelection selection{stored.samples()};  // a byte a sample
-  CompressedEdits compressed;
+  ColorTreeStore compressed;
   Recolorer recolorer{stored, rays, objects, programs, selection, compressed};
   std::unique_ptr<SceneLevel> level;  // made when a step first needs rays
   std::vector<ObjectId> lifted;       // objects that a drag has taken out of the ray trees, increasing
