@@ -116,9 +116,6 @@ struct RunReport {
 [[nodiscard]] Json step_json(const StepReport& step);
 [[nodiscard]] Json options_json(const RunReport& report);
 
-/// The class of several edits together, by the rule of classify(): that of a drag's release.
-[[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
-
 /// The class of this name; colour for any other.
 [[nodiscard]] ChangeClass change_class_of(std::string_view name);
 
