@@ -29,7 +29,6 @@ struct RgbGrids {
 };
 
 /// The error in [0, 1] of each pixel asked for, row by row. Requires grids of one size.
-[[nodiscard]] std::vector<float> ldr_flip(const RgbGrids& reference, const RgbGrids& test,
-                                          const FlipFilters& filters);
+[[nodiscard]] std::vector<float> ldr_flip(const RgbGrids& reference, const RgbGrids& test, const FlipFilters& filters);
 
 }  // namespace relook

@@ -251,7 +251,7 @@ Moves StoredImage::take_rebuilt() {
 Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
   Leaves leaves;
-  for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image_.view.samples, rect.x1 - rect.x0));
+  for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image_.view.samples, rect.width()));
   return leaves;
 }
 
@@ -282,7 +282,7 @@ void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t
                                  TileMask& changed) {
   const auto lease = residency_.use(PieceKind::sample_colors, tile);
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
-  const std::uint32_t width = rect.x1 - rect.x0, count = image_.view.samples;
+  const std::uint32_t width = rect.width(), count = image_.view.samples;
   const Rgba* stored = image_.sample_colors[tile].data();
   if (count == 1 && shown == nullptr) {
     std::uint32_t y = 0;

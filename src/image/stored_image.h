@@ -7,8 +7,8 @@
 
 #include "cache/residency/residency.h"
 #include "frame/changed_pixels.h"
+#include "frame/image.h"
 #include "image/counters.h"
-#include "image/image.h"
 #include "image/image_pieces.h"
 #include "image/new_samples.h"
 #include "image/path_classes.h"

@@ -31,7 +31,7 @@ class TreeCompressor {
 
   TileColorTrees compress(const Leaves& leaves) {
     const auto start = std::chrono::steady_clock::now();
-    for_each_sample(rect_, image_.view, leaves, [&](std::uint32_t sample, std::uint32_t) {
+    for_each_sample(rect_, image_.view.samples, leaves, [&](std::uint32_t sample, std::uint32_t) {
       const PathId path = trees_.paths[sample];
       if ((what_.tasks.of_path[path.index()] & kShade) == 0) return;
       const StoredTree stored{PathCursor(image_.paths.words(path), {stored_.lights().size(), what_.grow.shadow_bits}),
@@ -41,7 +41,7 @@ class TreeCompressor {
     });
     flush();
     for (const std::uint32_t sample : tile_.samples)
-      tile_.leaves.set(leaf_of(sample / image_.view.samples, rect_.x1 - rect_.x0));
+      tile_.leaves.set(leaf_of(sample / image_.view.samples, rect_.width()));
     tile_.is_valid = true;
     tile_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(tile_);

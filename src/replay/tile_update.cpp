@@ -33,7 +33,7 @@ class TileUpdater {
     tunnel_grid_ = work.tunnel_grid;
     if (!work.touched.empty()) by_cell_.resize(tunnel_grid_.cells());
     for (const CellTouches& touches : work.touched) by_cell_[touches.cell] = &touches;
-    for_each_sample(rect_, image_.view, work.leaves,
+    for_each_sample(rect_, image_.view.samples, work.leaves,
                     [&](std::uint32_t sample, std::uint32_t leaf) { update_sample(sample, leaf); });
     flush();
     return std::move(result_);
@@ -78,7 +78,7 @@ class TileUpdater {
   [[nodiscard]] const Touches* touches_of(std::uint32_t sample, PathId path) const {
     if (by_cell_.empty()) return nullptr;
     const std::uint32_t pixel = sample / image_.view.samples;
-    const CellTouches* touches = by_cell_[tunnel_grid_.cell_of(pixel, rect_.x1 - rect_.x0)];
+    const CellTouches* touches = by_cell_[tunnel_grid_.cell_of(pixel, rect_.width())];
     return touches != nullptr ? touches->of(stored_.classes().of(path)) : nullptr;
   }
 

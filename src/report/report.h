@@ -11,7 +11,7 @@
 #include "base/json.h"
 #include "edit/apply.h"
 #include "image/counters.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "replay/frame_place.h"
 #include "scene/camera.h"
 
