@@ -116,6 +116,12 @@ std::string_view change_class_name(ChangeClass change) {
   return kNames[static_cast<std::size_t>(change)];
 }
 
+ChangeClass combined(ChangeClass a, ChangeClass b) {
+  const auto is = [&](ChangeClass kind) { return a == kind || b == kind; };
+  if (is(ChangeClass::mixed) || (is(ChangeClass::optical) && is(ChangeClass::geometric))) return ChangeClass::mixed;
+  return std::max(a, b);
+}
+
 Classification classify(const Scene& after, const SceneDelta& delta) {
   Findings findings;
   for (const SceneDelta::MaterialChange& change : delta.materials) classify_material(after, change, findings);

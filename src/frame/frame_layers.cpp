@@ -3,7 +3,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "trace/tree/ray_tree.h"
+#include "base/tiles.h"
 
 namespace relook {
 namespace {

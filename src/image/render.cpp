@@ -45,7 +45,7 @@ class TileRenderer {
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
   void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
-    const std::uint32_t samples = sample_count(rect, view_);
+    const std::uint32_t samples = sample_count(rect, view_.samples);
     ChunkSize chunk(grow_.layout().lights);
     colors.resize(samples);
     if (record != nullptr) record->trees.first_hit.push_back(0);
@@ -57,7 +57,7 @@ class TileRenderer {
       primary_.append(rect, first, last, rays_);
       trace_trees(grow_, rays_, first, block_, roots_, counters);
       shader_.shade(block_, roots_, std::span(colors).subspan(first, last - first));
-      if (record != nullptr) keep(*record, rect.x1 - rect.x0);
+      if (record != nullptr) keep(*record, rect.width());
       chunk.learn(block_, last - first);
     }
   }
@@ -193,7 +193,7 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
   }
   std::uint64_t samples = 0;
   for (const std::size_t tile : tiles)
-    samples += sample_count(tile_rect(tile, image.frame.width, image.frame.height), image.view);
+    samples += sample_count(tile_rect(tile, image.frame.width, image.frame.height), image.view.samples);
   stats.counters.samples_total = stats.counters.samples_affected = samples;
   stats.counters.color_trees_evaluated = samples;
   stats.render_seconds = seconds_since(render_start);

@@ -18,8 +18,8 @@ TreeEncloser::TreeEncloser(const Image& image, const GrowScene& grow, std::size_
 
 std::span<const Tunnel> TreeEncloser::of(const RegionSquare& square) {
   set_.clear();
-  const std::uint32_t width = rect_.x1 - rect_.x0, samples = image_.view.samples;
-  for (std::uint32_t y = square.y; y < std::min(square.y + square.size, rect_.y1 - rect_.y0); ++y)
+  const std::uint32_t width = rect_.width(), samples = image_.view.samples;
+  for (std::uint32_t y = square.y; y < std::min(square.y + square.size, rect_.height()); ++y)
     for (std::uint32_t x = square.x; x < std::min(square.x + square.size, width); ++x)
       for (std::uint32_t k = 0; k < samples; ++k) add((y * width + x) * samples + k);
   return set_.tunnels();

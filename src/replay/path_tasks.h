@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "color/shade.h"
-#include "image/path_classes.h"
-#include "image/path_index.h"
+#include "image/stored_image.h"
 #include "replay/change.h"
 
 namespace relook {
@@ -32,6 +31,11 @@ struct PathSearch {
   std::uint32_t shadow_bits;           // of the paths
   const PathClasses& classes;
 };
+/// Both outlive it. `rays`: after the change.
+[[nodiscard]] inline PathSearch search_in(const StoredImage& stored, const ColorScene& rays) {
+  const Image& image = stored.image();
+  return {rays, image.paths, stored.index(), stored.lights(), image.view.shadow_bits, stored.classes()};
+}
 
 [[nodiscard]] PathTasks find_path_tasks(const PathSearch& search, const StepChange& change, ProgramTable& programs);
 

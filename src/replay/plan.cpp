@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "replay/replay.h"
-#include "report/report.h"
 
 namespace relook {
 namespace {

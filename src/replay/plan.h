@@ -8,7 +8,7 @@
 
 #include "edit/apply.h"
 #include "edit/journal.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "image/render.h"
 #include "replay/frame_place.h"
 #include "scene/compile/state.h"

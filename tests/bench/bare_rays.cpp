@@ -30,7 +30,7 @@ TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile
   TileRays result;
   GrowCounters counters;
 TreeBlock block;
-  for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
+  for (std::uint32_t sample = 0; sample < sample_count(rect, image.view.samples); ++sample) {
     const TileTrees& trees = image.trees[tile];
     const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), grow.layout()),
                             trees.hits_of(sample)};

@@ -22,12 +22,11 @@ struct TileSamples {
 
 /// The tiles that hold any of the pixels.
 std::vector<TileSamples> by_tile(const Camera& camera, const ViewOptions& view, std::span<const std::uint32_t> pixels) {
-  const std::uint32_t across = (camera.width + kTileSize - 1) / kTileSize;
   std::vector<TileSamples> tiles(tile_count(camera.width, camera.height));
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) tiles[tile].tile = tile;
   for (std::uint32_t pixel : pixels) {
     const std::uint32_t x = pixel % camera.width, y = pixel / camera.width;
-    const std::size_t tile = std::size_t{y / kTileSize} * across + x / kTileSize;
+    const std::size_t tile = tile_of(x, y, camera.width);
     const TileRect rect = tile_rect(tile, camera.width, camera.height);
     const std::uint32_t first = ((y - rect.y0) * (rect.x1 - rect.x0) + x - rect.x0) * view.samples;
     for (std::uint32_t k = 0; k < view.samples; ++k) tiles[tile].samples.push_back(first + k);

@@ -224,7 +224,7 @@ TEST(ShadowCounter, stored_counters_are_those_of_a_loop_over_all_objects) {
     const PrimaryRays primaries(state.scene().camera, view);
     const TileRect rect = tile_rect(0, image.frame.width, image.frame.height);
     OracleCounts counts;
-    for (std::uint32_t sample = 0; sample < sample_count(rect, view); ++sample) {
+    for (std::uint32_t sample = 0; sample < sample_count(rect, view.samples); ++sample) {
       const StoredTree stored{PathCursor(image.paths.words(image.trees[0].paths[sample]), grow.layout()),
                               image.trees[0].hits_of(sample)};
       GrowCounters counters;
@@ -305,7 +305,7 @@ std::vector<ShadowSegment> shadow_segments(const Replayer& replayer) {
   const PrimaryRays primaries(scene.camera, image.view);
   const TileRect rect = tile_rect(0, image.frame.width, image.frame.height);
   std::vector<ShadowSegment> segments;
-  for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
+  for (std::uint32_t sample = 0; sample < sample_count(rect, image.view.samples); ++sample) {
     const StoredTree stored{PathCursor(image.paths.words(image.trees[0].paths[sample]), grow.layout()),
                             image.trees[0].hits_of(sample)};
     GrowCounters counters;
