@@ -108,10 +108,12 @@ void classify_light(const Scene& scene, const SceneDelta::LightChange& change, F
   const Light& after = scene.light(change.id);
   const std::string name = "light " + (after.light.empty() ? before.light : after.light) + " (node " + after.node + ")";
   const LightEffect effect = effect_of(before, after);
-  findings.add(class_of(effect), name + (effect.exists_otherwise        ? after.alive ? " appears" : " disappears"
-                                         : before.kind != after.kind ? ": another type"
-                                         : effect.moved              ? " is transformed"
-                                                                     : ": " + describe_light_change(before, after)));
+  const auto sentence = [&]() -> std::string {
+    if (effect.exists_otherwise) return after.alive ? " appears" : " disappears";
+    if (before.kind != after.kind) return ": another type";
+    return effect.moved ? " is transformed" : ": " + describe_light_change(before, after);
+  };
+  findings.add(class_of(effect), name + sentence());
 }
 
 }  // namespace

@@ -29,8 +29,7 @@ ObjectEffect effect_of(const Object& before, const Object& after) {
 LightEffect effect_of(const Light& before, const Light& after) {
   LightEffect effect;
   effect.exists_otherwise = before.alive != after.alive;
-  effect.moved =
-      before.kind != after.kind || before.position != after.position || before.direction != after.direction;
+  effect.moved = before.kind != after.kind || before.position != after.position || before.direction != after.direction;
   effect.recolored = before.color != after.color || before.intensity != after.intensity ||
                      before.range != after.range || before.inner_cone != after.inner_cone ||
                      before.outer_cone != after.outer_cone;

@@ -66,8 +66,7 @@ std::string describe_values(const Color& before, const Color& after) {
   return text_of_value(before) + " -> " + text_of_value(after);
 }
 
-std::string describe_material_change(const Material& before, const Material& after,
-                                     std::span<const MaterialRow> rows) {
+std::string describe_material_change(const Material& before, const Material& after, std::span<const MaterialRow> rows) {
   std::vector<const MaterialRow*> changed;
   for (const MaterialRow& row : rows)
     if (differs(row, before, after)) changed.push_back(&row);

@@ -27,6 +27,16 @@ constexpr Row color(Field field, std::string_view words, std::string_view pointe
                     double fallback, double high) {
   return {bit_of(field), words, pointer, member, {fallback, fallback, fallback}, 0, high, {}, 0};
 }
+constexpr Row rgba(Field field, std::string_view words, std::string_view pointer, Rgba Material::*member,
+                   double fallback, double high, unsigned traits) {
+  return {bit_of(field), words, pointer, member, {fallback, fallback, fallback, fallback}, 0, high, {}, traits};
+}
+/// No, unless a document says yes.
+constexpr Row flag(Field field, std::string_view words, std::string_view pointer, bool Material::*member,
+                   unsigned traits) {
+  return {bit_of(field), words, pointer, member, {}, 0, 0, {}, traits};
+}
+/// The first of them, unless a document says otherwise.
 template <class Enum>
 constexpr Row choice(Field field, std::string_view words, std::string_view pointer, Enum Material::*member,
                      std::span<const std::string_view> choices) {
@@ -38,8 +48,8 @@ constexpr Row texture(Slot slot, std::string_view words, std::string_view pointe
 
 // Bounds of what glTF defines are glTF's. A slot's row comes before those of numbers inside its textureInfo.
 constexpr auto kRows = std::to_array<Row>({
-    {bit_of(Field::base_color), "base colour", "pbrMetallicRoughness/baseColorFactor", &Material::base_color,
-     {1, 1, 1, 1}, 0, 1, {}, Row::cuts},
+    rgba(Field::base_color, "base colour", "pbrMetallicRoughness/baseColorFactor", &Material::base_color, 1, 1,
+         Row::cuts),
     number(Field::metallic, "metallic", "pbrMetallicRoughness/metallicFactor", &Material::metallic, 1, 0, 1),
     number(Field::roughness, "roughness", "pbrMetallicRoughness/roughnessFactor", &Material::roughness, 1, 0, 1),
     texture(Slot::base_color, "base colour texture", "pbrMetallicRoughness/baseColorTexture", Row::srgb | Row::cuts),
@@ -55,7 +65,7 @@ constexpr auto kRows = std::to_array<Row>({
     choice(Field::alpha_mode, "alpha mode", "alphaMode", &Material::alpha_mode, kAlphaModes),
     number(Field::alpha_cutoff, "alpha cutoff", "alphaCutoff", &Material::alpha_cutoff, 0.5, 0, kUnbounded,
            Row::unread | Row::cuts),
-    {bit_of(Field::double_sided), "double-sided", "doubleSided", &Material::double_sided, {0}, 0, 0, {}, Row::unread},
+    flag(Field::double_sided, "double-sided", "doubleSided", &Material::double_sided, Row::unread),
 
     number(Field::ior, "index of refraction", "extensions/KHR_materials_ior/ior", &Material::ior, 1.5, 1, kCeiling,
            Row::zero_too),
@@ -114,8 +124,8 @@ constexpr auto kRows = std::to_array<Row>({
            kCeiling),
     texture(Slot::iridescence_thickness, "iridescence thickness texture",
             "extensions/KHR_materials_iridescence/iridescenceThicknessTexture"),
-    number(Field::emissive_strength, "emissive strength",
-           "extensions/KHR_materials_emissive_strength/emissiveStrength", &Material::emissive_strength, 1, 0, kCeiling),
+    number(Field::emissive_strength, "emissive strength", "extensions/KHR_materials_emissive_strength/emissiveStrength",
+           &Material::emissive_strength, 1, 0, kCeiling),
 
     choice(Field::model, "illumination model", "extras/relook/model", &Material::model, kModels),
     color(Field::phong_ambient, "ambient coefficient", "extras/relook/ambient", &Material::phong_ambient, 1,

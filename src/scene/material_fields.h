@@ -1,8 +1,8 @@
 // The table of a material's fields: where each stands in a look document and what may stand there, which member of
-// Material holds it, what people are told when it changes, and what a change of it does. From its rows follow the schema
-// of materials (look/look_schema), their compilation (compile/compile_material), which fields an edit changes and what
-// colour expressions read of them (here), and the sentence and the class of a change (edit/). A field is added by a
-// member, an enumerator and a row; functions take other rows than material_rows() so that a test can add one.
+// Material holds it, what people are told when it changes, and what a change of it does. From its rows follow the
+// schema of materials (look/look_schema), their compilation (compile/compile_material), which fields an edit changes
+// and what colour expressions read of them (here), and the sentence and the class of a change (edit/). A field is added
+// by a member, an enumerator and a row; functions take other rows than material_rows() so that a test can add one.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -87,13 +87,13 @@ struct MaterialRow {
     unwritten = 128  // SchemaField::unwritten: documents omit the default
   };
 
-  unsigned bit = 0;                            // in a FieldMask: of the Field, or of what the slot holds
-  std::string_view words;                      // what people call it: "index of refraction"
-  std::string_view pointer;                    // below the material: "pbrMetallicRoughness/roughnessFactor"
-  Member member;                               // of a slot: the textureInfo at `pointer`
-  std::array<double, 4> fallback{};            // as many as the member has components; a choice: its index
-  double low = 0, high = 0;                    // bounds of numbers and of the components of colours
-  std::span<const std::string_view> choices;   // by enumerator
+  unsigned bit = 0;                           // in a FieldMask: of the Field, or of what the slot holds
+  std::string_view words;                     // what people call it: "index of refraction"
+  std::string_view pointer;                   // below the material: "pbrMetallicRoughness/roughnessFactor"
+  Member member;                              // of a slot: the textureInfo at `pointer`
+  std::array<double, 4> fallback{};           // as many as the member has components; a choice: its index
+  double low = 0, high = 0;                   // bounds of numbers and of the components of colours
+  std::span<const std::string_view> choices;  // by enumerator
   unsigned traits = 0;
 
   [[nodiscard]] bool has(Trait trait) const { return (traits & trait) != 0; }

@@ -166,8 +166,7 @@ Material compile_material(const CompileContext& context, const std::string& name
   for (const MaterialRow& row : material_rows()) {
     const Json* info = row.slot() == nullptr ? nullptr : value_at(value, row.pointer);
     if (info == nullptr) continue;
-    m.slot(*row.slot()) =
-        slot_of(context, *info, row.has(MaterialRow::srgb), pointer + "/" + std::string(row.pointer));
+    m.slot(*row.slot()) = slot_of(context, *info, row.has(MaterialRow::srgb), pointer + "/" + std::string(row.pointer));
   }
   return m;
 }

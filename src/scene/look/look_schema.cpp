@@ -127,7 +127,8 @@ std::vector<SchemaField> members_below(const std::string& prefix, std::span<cons
   std::vector<SchemaField> members;
   for (const MaterialRow& row : rows) {
     if (!row.pointer.starts_with(prefix)) continue;
-    const std::string_view key = row.pointer.substr(prefix.size(), row.pointer.find('/', prefix.size()) - prefix.size());
+    std::string_view key = row.pointer.substr(prefix.size());
+    key = key.substr(0, key.find('/'));
     if (std::ranges::find(members, key, &SchemaField::key) != members.end()) continue;
     const bool is_inner = prefix.size() + key.size() < row.pointer.size();
     if (!is_inner && row.slot() == nullptr) {
