@@ -44,7 +44,7 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
   const Journal journal = read_journal(arguments.inputs[1], [&] { console.check_interrupt(); });
   require_not_outputs(arguments, files_of(journal), "a file of the journal");
   const CacheContent content = load_mended_cache(cache);
-  const ViewOptions view{content.samples, content.max_depth, content.shadow_bits};
+  const ViewOptions& view = content.image.view;
   {
     LookDocument document = content.document;
     document.assets = std::make_shared<Assets>(*document.assets);

@@ -8,7 +8,7 @@
 
 #include "compare/frame_comparison.h"
 #include "edit/journal_draft.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "report/report.h"
 #include "scene/gltf/import_rules.h"
 

@@ -36,9 +36,7 @@ CacheContent wanted_cache(const Arguments& arguments, Console& console) {
   CacheContent wanted;
   wanted.camera = set_up_view(loaded, arguments.view);
   console.warn(loaded.warnings);
-  wanted.samples = arguments.view.sampling.samples;
-  wanted.max_depth = arguments.view.sampling.max_depth;
-  wanted.shadow_bits = arguments.view.sampling.shadow_bits;
+  wanted.image.view = arguments.view.sampling;
   wanted.scene_hash = loaded.hash;
   wanted.storage = storage_options(arguments.structures);
   return wanted;

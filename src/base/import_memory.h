@@ -8,9 +8,6 @@
 
 namespace relook {
 
-struct Assets;
-struct LookDocument;
-
 inline constexpr std::uint64_t kImportMemory = std::uint64_t{2} << 30;  // bytes, unless told otherwise
 
 /// Bytes; to be called while nothing is read. What decoders held until then counts no longer.
@@ -51,12 +48,6 @@ std::shared_ptr<const T> kept_with(ImportShare share, T value) {
   const auto kept = std::make_shared<Kept>(Kept{std::move(share), std::move(value)});
   return {kept, &kept->value};
 }
-
-/// Empty assets that can hold a part of the budget.
-[[nodiscard]] std::shared_ptr<Assets> counted_assets();
-/// Counts the meshes and instances that a document has now, instead of those counted before. Nothing for assets that
-/// are not counted. Throws ResourceError.
-void count_geometry(const LookDocument& document);
 
 /// Saturating, so that no count of a file wraps around.
 [[nodiscard]] constexpr std::uint64_t bounded_product(std::uint64_t a, std::uint64_t b) {

@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "base/file_names.h"
 #include "base/hash.h"
-#include "base/import_memory.h"
 #include "base/parallel.h"
 #include "cache/cache_names.h"
 #include "cache/cache_parts.h"
@@ -16,6 +15,7 @@
 #include "cache/manifest.h"
 #include "cache/scene_parts.h"
 #include "cache/tunnel_parts.h"
+#include "scene/look/counted_assets.h"
 
 namespace relook {
 namespace {
@@ -43,11 +43,11 @@ constexpr std::size_t kWordsOfLostPath = 1024;
 
 void decode_tunnels(std::size_t group, BytesView bytes, Reading& reading) {
   CacheContent& content = reading.content;
-  PathBounds paths = bounds_of(content.paths);
+  PathBounds paths = bounds_of(content.image.paths);
   if (paths.count == 0) paths = {reading.manifest.pieces.ray_paths, kWordsOfLostPath};
   const TunnelReader tunnels(ByteSource(bytes), reading.manifest.identity, content.storage, content.camera,
-                             content.samples, group, paths);
-  const TileGroup tiles = cache_group(content.camera, content.samples, group);
+                             content.image.view.samples, group, paths);
+  const TileGroup tiles = cache_group(content.image, group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
     TileTunnels of_tile;
     if (tunnels.has(tile)) of_tile = tunnels.tunnels(tile);
@@ -70,11 +70,11 @@ void decode(const PartFile& part, BytesView bytes, Reading& reading) {
     case Part::textures:
       return decode_textures(bytes, identity, *reading.assets, *content.pyramids);
     case Part::frame:
-      return decode_frame(bytes, identity, content);
+      return decode_frame(bytes, identity, content.image);
     case Part::paths:
       return decode_paths(bytes, identity, content);
     case Part::trees:
-      if (reading.uses_trees) decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
+      if (reading.uses_trees) decode_trees(bytes, identity, part.group, reading.hits_of_path, content.image);
       return;
     case Part::tunnels:
       return decode_tunnels(part.group, bytes, reading);
@@ -100,7 +100,7 @@ Finding read_part(const PartFile& part, Reading& reading) {
     }
     check_sound(is_sound, "file hash mismatch");
     if (part.part == Part::trees && reading.uses_trees && reading.users.tile) {
-      const TileGroup group = cache_group(reading.content.camera, reading.content.samples, part.group);
+      const TileGroup group = cache_group(reading.content.image, part.group);
       for (std::size_t tile = group.first; tile < group.last; ++tile) reading.users.tile(reading.content, tile);
     }
   } catch (const CacheDamage& damage) {
@@ -134,22 +134,23 @@ bool is_loss(const Finding& finding) {
 CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& content) {
   CacheLosses losses;
   std::set<std::size_t> tiles, tunnels;
-  const std::size_t all = cache_tile_count(content.camera);
+  Image& image = content.image;
+  const std::size_t all = tile_count(image.frame.width, image.frame.height);
   for (const Finding& finding : findings) {
     losses.faults.push_back(finding.answer);
     const bool is_group = finding.part.part == Part::trees || finding.part.part == Part::tunnels;
     const TileGroup lost =
-        is_group ? cache_group(content.camera, content.samples, finding.part.group) : TileGroup{0, all};
+        is_group ? cache_group(content.camera, image.view.samples, finding.part.group) : TileGroup{0, all};
     for (std::size_t tile = lost.first; tile < lost.last; ++tile)
       (finding.part.part == Part::tunnels ? tunnels : tiles).insert(tile);
-    if (finding.part.part == Part::paths) content.paths = PathTable();
+    if (finding.part.part == Part::paths) image.paths = PathTable();
   }
-  content.frame.resize(std::size_t{content.camera.width} * content.camera.height);
-  content.trees.resize(all);
-  content.sample_colors.resize(all);
+  image.frame.pixels.resize(std::size_t{image.frame.width} * image.frame.height);
+  image.trees.resize(all);
+  image.sample_colors.resize(all);
   for (const std::size_t tile : tiles) {
-    content.trees[tile] = TileTrees();
-    content.sample_colors[tile].clear();
+    image.trees[tile] = TileTrees();
+    image.sample_colors[tile].clear();
   }
   for (const std::size_t tile : tunnels) {
     content.around_tiles[tile].clear();
@@ -164,17 +165,17 @@ constexpr std::size_t kFrame = 3, kPaths = 4, kFirstTrees = 5;  // of parts_of()
 
 /// Frame, paths and trees. Trees are checked against the paths, and take over pixels of the frame.
 std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& reading) {
-  CacheContent& content = reading.content;
+  Image& image = reading.content.image;
   require(parts[kFrame].part == Part::frame && parts[kPaths].part == Part::paths, "parts have their places");
   std::vector<Finding> findings = read_parts(parts.subspan(kFrame, 2), reading);
   reading.uses_trees = std::ranges::none_of(findings, is_fault);
   if (reading.uses_trees) {
-    const PathLayout layout{content.lights, content.shadow_bits};
-    for (std::size_t i = 0; i < content.paths.size(); ++i)
-      reading.hits_of_path.push_back(hit_count(content.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
-    const std::size_t tiles = cache_tile_count(content.camera);
-    content.trees.resize(tiles);
-    content.sample_colors.resize(tiles);
+    const PathLayout layout{reading.content.lights, image.view.shadow_bits};
+    for (std::size_t i = 0; i < image.paths.size(); ++i)
+      reading.hits_of_path.push_back(hit_count(image.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
+    const std::size_t tiles = tile_count(image.frame.width, image.frame.height);
+    image.trees.resize(tiles);
+    image.sample_colors.resize(tiles);
   }
   const auto has_trees = [](const PartFile& part) { return part.part == Part::trees; };
   const auto trees = static_cast<std::size_t>(std::ranges::count_if(parts, has_trees));
@@ -199,9 +200,8 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
   content.storage = manifest.storage;
   content.pieces = manifest.pieces;
   content.camera = manifest.camera;
-  content.samples = manifest.samples;
-  content.max_depth = manifest.max_depth;
-  content.shadow_bits = manifest.shadow_bits;
+  content.image.view = manifest.view;
+  content.image.frame = {manifest.camera.width, manifest.camera.height, {}};
   content.objects = manifest.objects;
   content.lights = manifest.lights;
   content.scene_hash = manifest.identity.scene_hash;
@@ -214,7 +214,7 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
 
   const bool keeps_tunnels =
       has_tunnels(content.storage, content.camera) && reading.users.tunnels == TunnelReading::keep;
-  content.around_tiles.resize(keeps_tunnels ? cache_tile_count(content.camera) : 0);
+  content.around_tiles.resize(keeps_tunnels ? tile_count(content.camera.width, content.camera.height) : 0);
   content.tunnels.resize(content.around_tiles.size());
   const std::vector<PartFile> parts = parts_of(content);
   std::vector<Finding> of_scene, of_image;

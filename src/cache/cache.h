@@ -10,12 +10,11 @@
 #include <vector>
 
 #include "base/json.h"
+#include "frame/image.h"
 #include "region/tile_tunnels.h"
 #include "region/tunnel_shape.h"
 #include "scene/look/look.h"
 #include "scene/texture/image.h"
-#include "trace/tree/ray_path.h"
-#include "trace/tree/ray_tree.h"
 
 namespace relook {
 
@@ -49,20 +48,16 @@ struct CacheContent;
 
 struct Manifest;
 
-/// Everything a replay needs. Plain data; the engine turns it into a SceneState and an Image and back.
+/// Everything a replay needs. Plain data; image/cached_image.h compiles the scene.
 struct CacheContent {
   LookDocument document;  // with meshes and encoded images
   std::shared_ptr<PyramidStore> pyramids;
   Camera camera;
-  std::uint32_t samples = 1, max_depth = 6, shadow_bits = 0;
-  std::string scene_hash;                        // XXH3-128 over the scene file's bytes and the look patch
-  std::uint32_t objects = 0, lights = 0;         // of the compiled scene: all slots; living lights
-  std::vector<Rgba> frame;                       // [height * width]
-  PathTable paths;                               // laid out for `lights` and `shadow_bits`
-  std::vector<TileTrees> trees;                  // [tiles]
-  std::vector<std::vector<Rgba>> sample_colors;  // [tiles][samples]
-  std::vector<Sections> around_tiles;            // [tiles] around all tunnels of each; empty: there are no tunnels
-  std::vector<TileTunnels> tunnels;              // [tiles] an empty one: left out; with `around_tiles`
+  std::string scene_hash;                 // XXH3-128 over the scene file's bytes and the look patch
+  std::uint32_t objects = 0, lights = 0;  // of the compiled scene: all slots; living lights
+  Image image;                            // seen by `camera`; its paths are laid out for `lights`
+  std::vector<Sections> around_tiles;     // [tiles] around all tunnels of each; empty: there are no tunnels
+  std::vector<TileTunnels> tunnels;       // [tiles] an empty one: left out; with `around_tiles`
   StorageOptions storage;
   PieceNumbers pieces;
   std::shared_ptr<const Manifest> manifest;  // that it has been read by; null: it has not been read

@@ -11,7 +11,7 @@ namespace relook {
 
 std::vector<PartFile> parts_of(const CacheContent& content) {
   std::vector<PartFile> parts{{Part::look}, {Part::geometry}, {Part::textures}, {Part::frame}, {Part::paths}};
-  const std::size_t groups = cache_group_count(content.camera, content.samples);
+  const std::size_t groups = cache_group_count(content.camera, content.image.view.samples);
   for (std::size_t group = 0; group < groups; ++group) parts.push_back({Part::trees, group});
   if (has_tunnels(content.storage, content.camera))
     for (std::size_t group = 0; group < groups; ++group) parts.push_back({Part::tunnels, group});
@@ -38,11 +38,11 @@ Bytes encode(const PartFile& part, const CacheContent& content, const CacheIdent
     case Part::textures:
       return encode_textures(*content.document.assets, *content.pyramids, identity);
     case Part::frame:
-      return encode_frame(content, identity);
+      return encode_frame(content.image, identity);
     case Part::paths:
-      return encode_paths(content, identity);
+      return encode_paths(content.image, identity);
     case Part::trees:
-      return encode_trees(content, part.group, identity);
+      return encode_trees(content.image, part.group, identity);
     case Part::tunnels:
       break;
   }

@@ -18,14 +18,10 @@ std::size_t tiles_per_group(std::uint32_t samples) {
   return std::max<std::size_t>(kGroupSamples / (std::size_t{kTileSize} * kTileSize * samples), 1);
 }
 
-struct Rect {
-  std::uint32_t x0, y0, x1, y1;
-};
-Rect tile_rect_of(const Camera& camera, std::size_t tile) {
-  const std::size_t across = (camera.width + kTileSize - 1) / kTileSize;
-  const auto x0 = static_cast<std::uint32_t>(tile % across * kTileSize);
-  const auto y0 = static_cast<std::uint32_t>(tile / across * kTileSize);
-  return {x0, y0, std::min(x0 + kTileSize, camera.width), std::min(y0 + kTileSize, camera.height)};
+/// `tiles`: of the image.
+TileGroup group_of(std::size_t tiles, std::uint32_t samples, std::size_t group) {
+  const std::size_t first = group * tiles_per_group(samples);
+  return {first, std::min(first + tiles_per_group(samples), tiles)};
 }
 
 void check_colors(const std::vector<Rgba>& colors, const char* section) {
@@ -34,79 +30,77 @@ void check_colors(const std::vector<Rgba>& colors, const char* section) {
                 "a number that is not finite in section ", section);
 }
 
-/// Tile by tile, in tile order, the pixels of the frame.
-std::vector<Rgba> pixels_of_tile(const CacheContent& content, std::size_t tile) {
-  const Rect rect = tile_rect_of(content.camera, tile);
+/// The pixels of a tile, in its order.
+std::vector<Rgba> pixels_of_tile(const Frame& frame, std::size_t tile) {
+  const TileRect rect = tile_rect(tile, frame.width, frame.height);
   std::vector<Rgba> pixels;
-  pixels.reserve(cache_tile_samples(content.camera, 1, tile));
+  pixels.reserve(rect.pixels());
   for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
-    const Rgba* row = content.frame.data() + std::size_t{y} * content.camera.width;
+    const Rgba* row = frame.pixels.data() + std::size_t{y} * frame.width;
     pixels.insert(pixels.end(), row + rect.x0, row + rect.x1);
   }
   return pixels;
 }
 
 /// At one sample a pixel the frame says it all.
-bool colors_are_pixels(const CacheContent& content, std::size_t first_tile, std::size_t last_tile) {
-  if (content.samples != 1) return false;
+bool colors_are_pixels(const Image& image, std::size_t first_tile, std::size_t last_tile) {
+  if (image.view.samples != 1) return false;
   for (std::size_t tile = first_tile; tile < last_tile; ++tile) {
-    const std::vector<Rgba> pixels = pixels_of_tile(content, tile);
-    const std::vector<Rgba>& colors = content.sample_colors[tile];
+    const std::vector<Rgba> pixels = pixels_of_tile(image.frame, tile);
+    const std::vector<Rgba>& colors = image.sample_colors[tile];
     if (std::memcmp(pixels.data(), colors.data(), pixels.size() * sizeof(Rgba)) != 0) return false;
   }
   return true;
 }
 
-}  // namespace
-
-std::size_t cache_tile_count(const Camera& camera) {
-  return std::size_t{(camera.width + kTileSize - 1) / kTileSize} * ((camera.height + kTileSize - 1) / kTileSize);
+/// How many samples the tiles [first, last) have each.
+std::vector<std::size_t> tile_samples(const Image& image, std::size_t first, std::size_t last) {
+  std::vector<std::size_t> samples;
+  for (std::size_t tile = first; tile < last; ++tile)
+    samples.push_back(sample_count(tile_rect(tile, image.frame.width, image.frame.height), image.view.samples));
+  return samples;
 }
 
+}  // namespace
+
 std::size_t cache_group_count(const Camera& camera, std::uint32_t samples) {
-  return (cache_tile_count(camera) + tiles_per_group(samples) - 1) / tiles_per_group(samples);
+  return (tile_count(camera.width, camera.height) + tiles_per_group(samples) - 1) / tiles_per_group(samples);
 }
 
 std::size_t cache_group_of(std::uint32_t samples, std::size_t tile) { return tile / tiles_per_group(samples); }
 
 TileGroup cache_group(const Camera& camera, std::uint32_t samples, std::size_t group) {
-  const std::size_t first = group * tiles_per_group(samples);
-  return {first, std::min(first + tiles_per_group(samples), cache_tile_count(camera))};
+  return group_of(tile_count(camera.width, camera.height), samples, group);
 }
 
-std::uint32_t cache_tile_width(const Camera& camera, std::size_t tile) {
-  const Rect rect = tile_rect_of(camera, tile);
-  return rect.x1 - rect.x0;
+TileGroup cache_group(const Image& image, std::size_t group) {
+  return group_of(tile_count(image.frame.width, image.frame.height), image.view.samples, group);
 }
 
-std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile) {
-  const Rect rect = tile_rect_of(camera, tile);
-  return std::size_t{rect.x1 - rect.x0} * (rect.y1 - rect.y0) * samples;
-}
-
-Bytes encode_frame(const CacheContent& content, const CacheIdentity& identity) {
-  require(content.frame.size() == std::size_t{content.camera.width} * content.camera.height, "the frame is whole");
+Bytes encode_frame(const Image& image, const CacheIdentity& identity) {
+  require(image.frame.pixels.size() == std::size_t{image.frame.width} * image.frame.height, "the frame is whole");
   ContainerWriter writer;
-  writer.add_column("pixels", content.frame, sizeof(Rgba));
+  writer.add_column("pixels", image.frame.pixels, sizeof(Rgba));
   return writer.finish(identity);
 }
 
-Bytes encode_paths(const CacheContent& content, const CacheIdentity& identity) {
+Bytes encode_paths(const Image& image, const CacheIdentity& identity) {
   ContainerWriter writer;
-  writer.add("words", std::as_bytes(content.paths.all_words()), sizeof(std::uint32_t));
-  writer.add("offsets", std::as_bytes(content.paths.all_offsets()), sizeof(std::uint64_t));
+  writer.add("words", std::as_bytes(image.paths.all_words()), sizeof(std::uint32_t));
+  writer.add("offsets", std::as_bytes(image.paths.all_offsets()), sizeof(std::uint64_t));
   return writer.finish(identity);
 }
 
-Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheIdentity& identity) {
+Bytes encode_trees(const Image& image, std::size_t group, const CacheIdentity& identity) {
   std::vector<std::uint32_t> paths, primitives;
   std::vector<float> u, v;
   std::vector<Rgba> colors;
   std::vector<std::uint8_t> kept;
-  const auto [first, last] = cache_group(content.camera, content.samples, group);
+  const auto [first, last] = cache_group(image, group);
+  const std::vector<std::size_t> samples = tile_samples(image, first, last);
   for (std::size_t tile = first; tile < last; ++tile) {
-    const TileTrees& trees = content.trees[tile];
-    require(trees.paths.size() == cache_tile_samples(content.camera, content.samples, tile), "a tile has all samples");
+    const TileTrees& trees = image.trees[tile];
+    require(trees.paths.size() == samples[tile - first], "a tile has all samples");
     for (const PathId path : trees.paths) paths.push_back(path.index());
     kept.push_back(trees.first_hit.empty() ? 0 : 1);
     for (const Hit& hit : trees.hits) {
@@ -114,7 +108,7 @@ Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheId
       u.push_back(hit.u);
       v.push_back(hit.v);
     }
-    const std::vector<Rgba>& tile_colors = content.sample_colors[tile];
+    const std::vector<Rgba>& tile_colors = image.sample_colors[tile];
     require(tile_colors.size() == trees.paths.size(), "a tile has the colours of all samples");
     colors.insert(colors.end(), tile_colors.begin(), tile_colors.end());
   }
@@ -124,29 +118,31 @@ Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheId
   writer.add_column("primitives", primitives, sizeof(std::uint32_t));
   writer.add_column("u", u, sizeof(float));
   writer.add_column("v", v, sizeof(float));
-  if (!colors_are_pixels(content, first, last)) writer.add_column("colors", colors, sizeof(Rgba));
+  if (!colors_are_pixels(image, first, last)) writer.add_column("colors", colors, sizeof(Rgba));
   return writer.finish(identity);
 }
 
-void decode_frame(BytesView file, const CacheIdentity& identity, CacheContent& content) {
+void decode_frame(BytesView file, const CacheIdentity& identity, Image& image) {
   const ContainerReader reader(file, identity);
-  content.frame = reader.column<Rgba>("pixels", std::uint64_t{content.camera.width} * content.camera.height);
-  check_colors(content.frame, "pixels");
+  image.frame.pixels = reader.column<Rgba>("pixels", std::uint64_t{image.frame.width} * image.frame.height);
+  check_colors(image.frame.pixels, "pixels");
 }
 
 void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& content) {
   const ContainerReader reader(file, identity);
   std::vector<std::uint32_t> words = reader.column<std::uint32_t>("words", reader.count<std::uint32_t>("words"));
-  const std::uint64_t most = std::uint64_t{content.camera.width} * content.camera.height * content.samples + 1;
+  const Frame& frame = content.image.frame;
+  const std::uint64_t most = std::uint64_t{frame.width} * frame.height * content.image.view.samples + 1;
   check_sound(reader.count<std::uint64_t>("offsets") <= most, "more paths than samples in section offsets");
   std::vector<std::uint64_t> offsets = reader.column<std::uint64_t>("offsets", reader.count<std::uint64_t>("offsets"));
   check_sound(!offsets.empty() && offsets.front() == 0 && offsets.back() == words.size() &&
                   std::is_sorted(offsets.begin(), offsets.end(), std::less_equal<>()),
               "the offsets of section offsets do not increase");
-  const PathLayout layout{content.lights, content.shadow_bits};
-  content.paths = PathTable::from_columns(std::move(words), std::move(offsets));
-  for (std::size_t i = 0; i < content.paths.size(); ++i) {
-    const auto path = content.paths.words(PathId(static_cast<std::uint32_t>(i)));
+  const PathLayout layout{content.lights, content.image.view.shadow_bits};
+  PathTable& paths = content.image.paths;
+  paths = PathTable::from_columns(std::move(words), std::move(offsets));
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const auto path = paths.words(PathId(static_cast<std::uint32_t>(i)));
     const std::vector<std::string> broken = broken_invariants(path, content.objects, layout);
     check_sound(broken.empty(), broken.empty() ? "" : "path " + std::to_string(i) + ": " + broken.front());
   }
@@ -224,23 +220,21 @@ GroupColumns read_columns(const ContainerReader& reader, std::span<const std::si
 }  // namespace
 
 void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
-                  std::span<const std::size_t> hits_of_path, CacheContent& content) {
+                  std::span<const std::size_t> hits_of_path, Image& image) {
   const ContainerReader reader(file, identity);
-  const auto [first, last] = cache_group(content.camera, content.samples, group);
-  std::vector<std::size_t> samples;
-  for (std::size_t tile = first; tile < last; ++tile)
-    samples.push_back(cache_tile_samples(content.camera, content.samples, tile));
+  const auto [first, last] = cache_group(image, group);
+  const std::vector<std::size_t> samples = tile_samples(image, first, last);
   const bool has_colors = reader.has("colors");
-  check_sound(has_colors || content.samples == 1, "no section colors");
+  check_sound(has_colors || image.view.samples == 1, "no section colors");
   GroupColumns columns = read_columns(reader, samples, has_colors, hits_of_path);
   for (std::size_t tile = first; tile < last; ++tile) {
     const auto first_color = static_cast<std::ptrdiff_t>(columns.next_sample);
-    content.trees[tile] = columns.take_tile(samples[tile - first], columns.kept[tile - first] == 1, hits_of_path);
+    image.trees[tile] = columns.take_tile(samples[tile - first], columns.kept[tile - first] == 1, hits_of_path);
     if (!has_colors)
-      content.sample_colors[tile] = pixels_of_tile(content, tile);
+      image.sample_colors[tile] = pixels_of_tile(image.frame, tile);
     else
-      content.sample_colors[tile].assign(columns.colors.begin() + first_color,
-                                         columns.colors.begin() + static_cast<std::ptrdiff_t>(columns.next_sample));
+      image.sample_colors[tile].assign(columns.colors.begin() + first_color,
+                                       columns.colors.begin() + static_cast<std::ptrdiff_t>(columns.next_sample));
   }
 }
 

@@ -9,7 +9,6 @@
 
 namespace relook {
 
-[[nodiscard]] std::size_t cache_tile_count(const Camera& camera);
 /// Tiles [first, last) of one file: up to 131,072 samples, at least one tile.
 struct TileGroup {
   std::size_t first = 0, last = 0;
@@ -17,19 +16,17 @@ struct TileGroup {
 [[nodiscard]] std::size_t cache_group_count(const Camera& camera, std::uint32_t samples);
 [[nodiscard]] std::size_t cache_group_of(std::uint32_t samples, std::size_t tile);
 [[nodiscard]] TileGroup cache_group(const Camera& camera, std::uint32_t samples, std::size_t group);
-/// Pixels of one row of a tile of the image.
-[[nodiscard]] std::uint32_t cache_tile_width(const Camera& camera, std::size_t tile);
-/// Samples of a tile of the image.
-[[nodiscard]] std::size_t cache_tile_samples(const Camera& camera, std::uint32_t samples, std::size_t tile);
+[[nodiscard]] TileGroup cache_group(const Image& image, std::size_t group);
 
-[[nodiscard]] Bytes encode_frame(const CacheContent& content, const CacheIdentity& identity);
-[[nodiscard]] Bytes encode_paths(const CacheContent& content, const CacheIdentity& identity);
-[[nodiscard]] Bytes encode_trees(const CacheContent& content, std::size_t group, const CacheIdentity& identity);
+[[nodiscard]] Bytes encode_frame(const Image& image, const CacheIdentity& identity);
+[[nodiscard]] Bytes encode_paths(const Image& image, const CacheIdentity& identity);
+[[nodiscard]] Bytes encode_trees(const Image& image, std::size_t group, const CacheIdentity& identity);
 
-void decode_frame(BytesView file, const CacheIdentity& identity, CacheContent& content);
+/// Of the three, the view and the size of the frame are known.
+void decode_frame(BytesView file, const CacheIdentity& identity, Image& image);
 void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& content);
-/// `hits_of_path`: hit_count() of every path. content.trees and content.sample_colors have a slot for every tile.
+/// `hits_of_path`: hit_count() of every path. image.trees and image.sample_colors have a slot for every tile.
 void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
-                  std::span<const std::size_t> hits_of_path, CacheContent& content);
+                  std::span<const std::size_t> hits_of_path, Image& image);
 
 }  // namespace relook

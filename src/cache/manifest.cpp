@@ -108,9 +108,9 @@ Json content_json(const Manifest& manifest) {
           {"scene", manifest.identity.scene_hash},
           {"options", manifest.identity.options_hash},
           {"camera", camera_json(manifest.camera)},
-          {"samples", manifest.samples},
-          {"max_depth", manifest.max_depth},
-          {"shadow_bits", manifest.shadow_bits},
+          {"samples", manifest.view.samples},
+          {"max_depth", manifest.view.max_depth},
+          {"shadow_bits", manifest.view.shadow_bits},
           {"objects", manifest.objects},
           {"lights", manifest.lights},
           {"files", std::move(files)}};
@@ -127,9 +127,9 @@ Manifest read_content(const JsonView& view) {
   if (!is_hash(manifest.identity.scene_hash)) view.at("scene").fail("not a hash");
   if (!is_hash(manifest.identity.options_hash)) view.at("options").fail("not a hash");
   manifest.camera = read_camera(view.at("camera"));
-  manifest.samples = static_cast<std::uint32_t>(view.at("samples").integer(1, kMostSamples));
-  manifest.max_depth = static_cast<std::uint32_t>(view.at("max_depth").integer(1, kMostDepth));
-  manifest.shadow_bits = static_cast<std::uint32_t>(view.at("shadow_bits").integer(0, ShadowCounter::kMostBits));
+  manifest.view.samples = static_cast<std::uint32_t>(view.at("samples").integer(1, kMostSamples));
+  manifest.view.max_depth = static_cast<std::uint32_t>(view.at("max_depth").integer(1, kMostDepth));
+  manifest.view.shadow_bits = static_cast<std::uint32_t>(view.at("shadow_bits").integer(0, ShadowCounter::kMostBits));
   manifest.objects = static_cast<std::uint32_t>(view.at("objects").integer(0, kMostEntities));
   manifest.lights = static_cast<std::uint32_t>(view.at("lights").integer(0, kMostEntities));
   const JsonView files = view.at("files");
@@ -261,9 +261,7 @@ Manifest manifest_of(const CacheContent& content) {
   manifest.storage = content.storage;
   manifest.identity = {content.scene_hash, options_hash(content)};
   manifest.camera = content.camera;
-  manifest.samples = content.samples;
-  manifest.max_depth = content.max_depth;
-  manifest.shadow_bits = content.shadow_bits;
+  manifest.view = content.image.view;
   manifest.objects = content.objects;
   manifest.lights = content.lights;
   manifest.pieces = content.pieces;
@@ -272,9 +270,9 @@ Manifest manifest_of(const CacheContent& content) {
 
 std::string options_hash(const CacheContent& content) {
   const Json options{{"camera", camera_json(content.camera)},
-                     {"samples", content.samples},
-                     {"max_depth", content.max_depth},
-                     {"shadow_bits", content.shadow_bits}};
+                     {"samples", content.image.view.samples},
+                     {"max_depth", content.image.view.max_depth},
+                     {"shadow_bits", content.image.view.shadow_bits}};
   return hash128(bytes_of(options.dump()));
 }
 

@@ -26,7 +26,7 @@ struct Manifest {
   PieceNumbers pieces;
   CacheIdentity identity;
   Camera camera;
-  std::uint32_t samples = 1, max_depth = 6, shadow_bits = 0;
+  ViewOptions view;
   std::uint32_t objects = 0, lights = 0;
   std::vector<CacheFile> files;  // by name
 };

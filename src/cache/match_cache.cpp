@@ -46,9 +46,10 @@ CacheAnswer other_content(const Manifest& there, const Manifest& wanted) {
   compare(same_view(camera, other), "camera", printable(camera.name));
   compare(camera.width == other.width && camera.height == other.height, "resolution",
           std::to_string(camera.width) + "x" + std::to_string(camera.height));
-  compare(there.samples == wanted.samples, "--samples", std::to_string(there.samples));
-  compare(there.max_depth == wanted.max_depth, "--max-depth", std::to_string(there.max_depth));
-  compare(there.shadow_bits == wanted.shadow_bits, "--shadow-bits", std::to_string(there.shadow_bits));
+  const ViewOptions &view = there.view, &other_view = wanted.view;
+  compare(view.samples == other_view.samples, "--samples", std::to_string(view.samples));
+  compare(view.max_depth == other_view.max_depth, "--max-depth", std::to_string(view.max_depth));
+  compare(view.shadow_bits == other_view.shadow_bits, "--shadow-bits", std::to_string(view.shadow_bits));
   compare(storage.ray_trees_percent == wanted.storage.ray_trees_percent, "--ray-trees",
           number(storage.ray_trees_percent));
   compare(storage.disk_bytes == wanted.storage.disk_bytes, "--disk",

@@ -1,7 +1,6 @@
 // What a cache has, counted (Table 2 of the paper).
 #include "base/parallel.h"
 #include "cache/cache.h"
-#include "cache/image_parts.h"
 #include "region/path_groups.h"
 
 namespace relook {
@@ -12,23 +11,24 @@ std::uint64_t tunnels_of(const TileTunnels& tunnels) {
   return tunnels.tunnels() + (has_one_alone ? 1 : 0);
 }
 
-std::uint64_t groups_of(const CacheContent& content, std::size_t tile) {
-  const std::uint32_t width = cache_tile_width(content.camera, tile);
+std::uint64_t groups_of(const Image& image, std::size_t tile) {
+  const std::uint32_t width = tile_rect(tile, image.frame.width, image.frame.height).width();
   const ClassOf own_class = [](PathId path) { return path; };
-  const PathGroups groups(content.trees[tile], width, content.samples, 1, own_class);
-  return count_groups(groups, content.trees[tile], width, content.samples, own_class);
+  const PathGroups groups(image.trees[tile], width, image.view.samples, 1, own_class);
+  return count_groups(groups, image.trees[tile], width, image.view.samples, own_class);
 }
 
 }  // namespace
 
 PieceNumbers count_pieces(const CacheContent& content) {
+  const Image& image = content.image;
   PieceNumbers pieces;
-  pieces.ray_paths = content.paths.size();
-  std::vector<std::uint64_t> groups(content.trees.size());
-  parallel_for(groups.size(), [&](std::size_t tile) { groups[tile] = groups_of(content, tile); });
-  for (std::size_t tile = 0; tile < content.trees.size(); ++tile) {
+  pieces.ray_paths = image.paths.size();
+  std::vector<std::uint64_t> groups(image.trees.size());
+  parallel_for(groups.size(), [&](std::size_t tile) { groups[tile] = groups_of(image, tile); });
+  for (std::size_t tile = 0; tile < image.trees.size(); ++tile) {
     pieces.groups += groups[tile];
-    if (!content.trees[tile].first_hit.empty()) pieces.ray_trees += content.trees[tile].paths.size();
+    if (has_hits(image.trees[tile])) pieces.ray_trees += image.trees[tile].paths.size();
   }
   for (const TileTunnels& tunnels : content.tunnels) pieces.tunnels += tunnels_of(tunnels);
   if (!content.tunnels.empty()) pieces.tunnels += regions_above_tiles(content.camera.width, content.camera.height);

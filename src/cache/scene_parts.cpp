@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/import_memory.h"
 #include "base/json.h"
+#include "scene/look/counted_assets.h"
 
 namespace relook {
 namespace {

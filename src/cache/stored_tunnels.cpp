@@ -24,7 +24,7 @@ StoredTunnels::StoredTunnels(std::filesystem::path path, std::shared_ptr<const M
     : path_(std::move(path)),
       manifest_(std::move(manifest)),
       paths_(paths),
-      groups_(cache_group_count(manifest_->camera, manifest_->samples)) {}
+      groups_(cache_group_count(manifest_->camera, manifest_->view.samples)) {}
 StoredTunnels::~StoredTunnels() = default;
 
 std::shared_ptr<StoredTunnels> StoredTunnels::of_cache(const std::filesystem::path& path,
@@ -51,7 +51,7 @@ void StoredTunnels::open(std::size_t number, Group& group) {
     group.file = file.name;
     auto reader =
         std::make_unique<TunnelReader>(ByteSource(path_ / file.name, file.bytes), manifest_->identity,
-                                       manifest_->storage, manifest_->camera, manifest_->samples, number, paths_);
+                                       manifest_->storage, manifest_->camera, manifest_->view.samples, number, paths_);
     check_sound(reader->bound_to() == hashes_bound_to(*manifest_, number), kOfOtherTrees);
     group.reader = std::move(reader);
   } catch (const CacheDamage& damage) {
@@ -60,7 +60,7 @@ void StoredTunnels::open(std::size_t number, Group& group) {
 }
 
 StoredTunnels::Group& StoredTunnels::group_of(std::size_t tile) {
-  const std::size_t number = cache_group_of(manifest_->samples, tile);
+  const std::size_t number = cache_group_of(manifest_->view.samples, tile);
   Group& group = groups_[number];
   std::call_once(group.is_opened, [&] { open(number, group); });
   return group;

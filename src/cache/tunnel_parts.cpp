@@ -23,7 +23,7 @@ std::string section_name(const char* column, std::size_t tile_of_group) {
 
 Bytes encode_tunnels(const CacheContent& content, std::size_t group, const CacheIdentity& identity,
                      const std::string& bound_to) {
-  const auto [first, last] = cache_group(content.camera, content.samples, group);
+  const auto [first, last] = cache_group(content.image, group);
   ContainerWriter writer;
   writer.add("bound_to", bytes_of(bound_to));
   std::vector<std::uint32_t> around_counts;
@@ -84,7 +84,8 @@ TunnelReader::TunnelReader(const ByteSource& file, const CacheIdentity& identity
 void TunnelReader::check_sections(std::uint64_t sections, std::uint64_t tunnels, std::size_t first,
                                   std::size_t last) const {
   std::uint64_t samples = 0;
-  for (std::size_t tile = first; tile < last; ++tile) samples += cache_tile_samples(camera_, samples_, tile);
+  for (std::size_t tile = first; tile < last; ++tile)
+    samples += sample_count(tile_rect(tile, camera_.width, camera_.height), samples_);
   check_sound(sections <= samples * paths_.most_words + tunnels, "more sections than the ray trees can have");
 }
 

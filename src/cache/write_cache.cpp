@@ -46,9 +46,9 @@ std::uint64_t file_bytes(const CacheContent& content, const CacheIdentity& ident
 
 Dispensable take_hits(CacheContent& content, const CacheIdentity& identity, const PartFile& part, Taken& taken) {
   Dispensable option{part, file_bytes(content, identity, part)};
-  const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
+  const TileGroup tiles = cache_group(content.image, part.group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
-    TileTrees& trees = content.trees[tile];
+    TileTrees& trees = content.image.trees[tile];
     option.seconds += kHitSeconds * static_cast<double>(trees.hits.size());
     taken.hits[tile].first_hit = std::exchange(trees.first_hit, {});
     taken.hits[tile].hits = std::exchange(trees.hits, {});
@@ -61,9 +61,9 @@ Dispensable take_hits(CacheContent& content, const CacheIdentity& identity, cons
 Dispensable take_tunnels(CacheContent& content, const CacheIdentity& identity, const PartFile& part,
                          std::span<const double> areas, Taken& taken) {
   Dispensable option{part, file_bytes(content, identity, part)};
-  const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
+  const TileGroup tiles = cache_group(content.image, part.group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
-    option.seconds += kTunnelSeconds * static_cast<double>(content.trees[tile].hits.size()) * areas[tile];
+    option.seconds += kTunnelSeconds * static_cast<double>(content.image.trees[tile].hits.size()) * areas[tile];
     taken.tunnels[tile] = std::exchange(content.tunnels[tile], {});
   }
   option.without = file_bytes(content, identity, part);
@@ -71,14 +71,14 @@ Dispensable take_tunnels(CacheContent& content, const CacheIdentity& identity, c
 }
 
 void put_back(CacheContent& content, const PartFile& part, Taken& taken) {
-  const TileGroup tiles = cache_group(content.camera, content.samples, part.group);
+  const TileGroup tiles = cache_group(content.image, part.group);
   for (std::size_t tile = tiles.first; tile < tiles.last; ++tile) {
     if (part.part == Part::tunnels) {
       content.tunnels[tile] = std::move(taken.tunnels[tile]);
       continue;
     }
-    content.trees[tile].first_hit = std::move(taken.hits[tile].first_hit);
-    content.trees[tile].hits = std::move(taken.hits[tile].hits);
+    content.image.trees[tile].first_hit = std::move(taken.hits[tile].first_hit);
+    content.image.trees[tile].hits = std::move(taken.hits[tile].hits);
   }
 }
 
@@ -88,7 +88,7 @@ void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const dou
   const CacheIdentity identity{content.scene_hash, options_hash(content)};
   const std::vector<PartFile> parts = parts_of(content);
   std::vector<Dispensable> options(parts.size());
-  Taken taken{std::vector<TileTrees>(content.trees.size()), std::vector<TileTunnels>(content.tunnels.size())};
+  Taken taken{std::vector<TileTrees>(content.image.trees.size()), std::vector<TileTunnels>(content.tunnels.size())};
   const auto for_each = [&](Part kind, const auto& take) {
     parallel_for(parts.size(), [&](std::size_t i) {
       if (parts[i].part == kind) options[i] = take(parts[i]);

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "base/json.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

@@ -4,7 +4,7 @@
 #pragma once
 #include "compare/frame_comparison.h"
 #include "frame/exr_file.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

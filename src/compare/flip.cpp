@@ -58,9 +58,9 @@ bool sees_difference(const Frame& a, const Frame& b, const Square& square) {
 }
 
 /// The square and what the filters see beyond it; the frame's last rows and columns go on for ever.
-RgbPlanes exposed(const Frame& frame, const Square& square, double exposure) {
+RgbGrids exposed(const Frame& frame, const Square& square, double exposure) {
   const std::size_t width = square.x1 - square.x0 + 2 * kFlipRadius, height = square.y1 - square.y0 + 2 * kFlipRadius;
-  RgbPlanes planes{Plane(width, height), Plane(width, height), Plane(width, height)};
+  RgbGrids grids{Grid(width, height), Grid(width, height), Grid(width, height)};
   const auto scale = static_cast<float>(std::exp2(exposure));
   const ToneCurve curve;
   const auto inside = [](std::size_t place, std::size_t side) {
@@ -70,11 +70,11 @@ RgbPlanes exposed(const Frame& frame, const Square& square, double exposure) {
     for (std::size_t x = 0; x < width; ++x) {
       const std::size_t column = inside(square.x0 + x, frame.width), row = inside(square.y0 + y, frame.height);
       const Rgba& pixel = frame.pixels[row * frame.width + column];
-      planes.r.values[y * width + x] = curve(scale * pixel.r);
-      planes.g.values[y * width + x] = curve(scale * pixel.g);
-      planes.b.values[y * width + x] = curve(scale * pixel.b);
+      grids.r.values[y * width + x] = curve(scale * pixel.r);
+      grids.g.values[y * width + x] = curve(scale * pixel.g);
+      grids.b.values[y * width + x] = curve(scale * pixel.b);
     }
-  return planes;
+  return grids;
 }
 
 bool is_finite(const Frame& frame) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

@@ -119,31 +119,31 @@ FlipKernel feature_kernel(const Weight& weight) {
   return kernel;
 }
 
-struct OpponentPlanes {
-  Plane y, cx, cz;
+struct OpponentGrids {
+  Grid y, cx, cz;
 };
 
-OpponentPlanes opponent_planes(const RgbPlanes& image) {
-  OpponentPlanes planes{image.r, image.g, image.b};
+OpponentGrids opponent_grids(const RgbGrids& image) {
+  OpponentGrids grids{image.r, image.g, image.b};
   for (std::size_t i = 0; i < image.r.values.size(); ++i) {
     const Triple color = opponent({image.r.values[i], image.g.values[i], image.b.values[i]});
-    planes.y.values[i] = color.x;
-    planes.cx.values[i] = color.y;
-    planes.cz.values[i] = color.z;
+    grids.y.values[i] = color.x;
+    grids.cx.values[i] = color.y;
+    grids.cz.values[i] = color.z;
   }
-  return planes;
+  return grids;
 }
 
-Plane filtered(const Plane& plane, const FlipKernel& along_rows, const FlipKernel& along_columns) {
-  return filter_columns(filter_rows(plane, along_rows), along_columns);
+Grid filtered(const Grid& grid, const FlipKernel& along_rows, const FlipKernel& along_columns) {
+  return filter_columns(filter_rows(grid, along_rows), along_columns);
 }
 
 /// What the observer sees of the colours: filtered, back in the range of the display, perceptually uniform.
-std::vector<Triple> seen_colors(const OpponentPlanes& image, const FlipFilters& filters) {
-  const Plane y = filtered(image.y, filters.achromatic, filters.achromatic);
-  const Plane cx = filtered(image.cx, filters.red_green, filters.red_green);
-  const Plane wide = filtered(image.cz, filters.blue_yellow_wide, filters.blue_yellow_wide);
-  const Plane narrow = filtered(image.cz, filters.blue_yellow_narrow, filters.blue_yellow_narrow);
+std::vector<Triple> seen_colors(const OpponentGrids& image, const FlipFilters& filters) {
+  const Grid y = filtered(image.y, filters.achromatic, filters.achromatic);
+  const Grid cx = filtered(image.cx, filters.red_green, filters.red_green);
+  const Grid wide = filtered(image.cz, filters.blue_yellow_wide, filters.blue_yellow_wide);
+  const Grid narrow = filtered(image.cz, filters.blue_yellow_narrow, filters.blue_yellow_narrow);
   std::vector<Triple> seen(y.values.size());
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const float cz = filters.wide_share * wide.values[i] + filters.narrow_share * narrow.values[i];
@@ -157,12 +157,12 @@ struct Features {
   std::vector<float> edges, points;  // magnitudes
 };
 
-Features features(Plane achromatic, const FlipFilters& filters) {
+Features features(Grid achromatic, const FlipFilters& filters) {
   for (float& value : achromatic.values) value = (value + 16) / 116;
-  const Plane smooth = filter_rows(achromatic, filters.gaussian);
+  const Grid smooth = filter_rows(achromatic, filters.gaussian);
   const auto magnitudes = [&](const FlipKernel& derivative) {
-    const Plane across = filtered(achromatic, derivative, filters.gaussian);
-    const Plane down = filter_columns(smooth, derivative);
+    const Grid across = filtered(achromatic, derivative, filters.gaussian);
+    const Grid down = filter_columns(smooth, derivative);
     std::vector<float> values(across.values.size());
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = length(across.values[i], down.values[i]);
     return values;
@@ -187,9 +187,9 @@ FlipFilters flip_filters() {
   return filters;
 }
 
-std::vector<float> ldr_flip(const RgbPlanes& reference, const RgbPlanes& test, const FlipFilters& filters) {
+std::vector<float> ldr_flip(const RgbGrids& reference, const RgbGrids& test, const FlipFilters& filters) {
   require(reference.r.width == test.r.width && reference.r.height == test.r.height, "images of one size are compared");
-  const OpponentPlanes a = opponent_planes(reference), b = opponent_planes(test);
+  const OpponentGrids a = opponent_grids(reference), b = opponent_grids(test);
   const std::vector<Triple> seen_a = seen_colors(a, filters), seen_b = seen_colors(b, filters);
   const Features features_a = features(a.y, filters), features_b = features(b.y, filters);
   std::vector<float> errors(seen_a.size());

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "compare/plane.h"
+#include "compare/grid.h"
 
 namespace relook {
 
@@ -23,13 +23,12 @@ struct FlipFilters {
 };
 [[nodiscard]] FlipFilters flip_filters();
 
-/// Linear Rec.709 in [0, 1]: planes with kFlipRadius pixels beyond those asked for on each side.
-struct RgbPlanes {
-  Plane r, g, b;
+/// Linear Rec.709 in [0, 1]: grids with kFlipRadius pixels beyond those asked for on each side.
+struct RgbGrids {
+  Grid r, g, b;
 };
 
-/// The error in [0, 1] of each pixel asked for, row by row. Requires planes of one size.
-[[nodiscard]] std::vector<float> ldr_flip(const RgbPlanes& reference, const RgbPlanes& test,
-                                          const FlipFilters& filters);
+/// The error in [0, 1] of each pixel asked for, row by row. Requires grids of one size.
+[[nodiscard]] std::vector<float> ldr_flip(const RgbGrids& reference, const RgbGrids& test, const FlipFilters& filters);
 
 }  // namespace relook

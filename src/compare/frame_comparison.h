@@ -11,7 +11,7 @@
 #include "compare/layer_comparison.h"
 #include "compare/similarity.h"
 #include "compare/thresholds.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

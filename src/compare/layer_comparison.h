@@ -11,7 +11,7 @@
 #include "base/json.h"
 #include "compare/thresholds.h"
 #include "frame/exr_file.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

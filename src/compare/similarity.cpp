@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "compare/plane.h"
+#include "compare/grid.h"
 
 namespace relook {
 namespace {
@@ -32,17 +32,17 @@ float srgb(float linear) {
   return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
 }
 
-Plane luma(const Frame& frame) {
-  Plane plane(frame.width, frame.height);
+Grid luma(const Frame& frame) {
+  Grid grid(frame.width, frame.height);
   for (std::size_t i = 0; i < frame.pixels.size(); ++i) {
     const Rgba& pixel = frame.pixels[i];
-    plane.values[i] = 0.2126F * srgb(pixel.r) + 0.7152F * srgb(pixel.g) + 0.0722F * srgb(pixel.b);
+    grid.values[i] = 0.2126F * srgb(pixel.r) + 0.7152F * srgb(pixel.g) + 0.0722F * srgb(pixel.b);
   }
-  return plane;
+  return grid;
 }
 
-Plane product(const Plane& a, const Plane& b) {
-  Plane result(a.width, a.height);
+Grid product(const Grid& a, const Grid& b) {
+  Grid result(a.width, a.height);
   for (std::size_t i = 0; i < result.values.size(); ++i) result.values[i] = a.values[i] * b.values[i];
   return result;
 }
@@ -58,10 +58,10 @@ std::optional<double> ssim(const Frame& a, const Frame& b) {
   require(a.width == b.width && a.height == b.height, "frames of one size are compared");
   if (a.width < kWindow || a.height < kWindow) return std::nullopt;
   const Window window = gaussian_window();
-  const auto mean = [&](const Plane& plane) { return filter_columns(filter_rows(plane, window), window); };
-  const Plane x = luma(a), y = luma(b);
-  const Plane mean_x = mean(x), mean_y = mean(y);
-  const Plane mean_xx = mean(product(x, x)), mean_yy = mean(product(y, y)), mean_xy = mean(product(x, y));
+  const auto mean = [&](const Grid& grid) { return filter_columns(filter_rows(grid, window), window); };
+  const Grid x = luma(a), y = luma(b);
+  const Grid mean_x = mean(x), mean_y = mean(y);
+  const Grid mean_xx = mean(product(x, x)), mean_yy = mean(product(y, y)), mean_xy = mean(product(x, y));
   constexpr double kC1 = 0.01 * 0.01, kC2 = 0.03 * 0.03;
   double sum = 0;
   for (std::size_t i = 0; i < mean_x.values.size(); ++i) {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "compare/compare.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

@@ -19,6 +19,9 @@ struct Classification {
       reasons;  // one sentence per changed entity: "material Glass: index of refraction 1.5 -> 1.8"
 };
 
+/// The class of several edits together, by the rule of classify(): that of a drag's release.
+[[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
+
 /// The class follows from the values before and after alone. A delta that changes nothing is `color`. Both an optical
 /// (or colour) and a geometric change in one delta: `mixed` only if optical and geometric both occur; otherwise the
 /// strongest of color < optical < geometric.

@@ -6,6 +6,7 @@
 #include "edit/transaction.h"
 #include "scene/gltf/import.h"
 #include "scene/gltf/import_rules.h"
+#include "scene/look/counted_assets.h"
 #include "scene/look/look_names.h"
 
 namespace relook {

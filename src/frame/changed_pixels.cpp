@@ -9,11 +9,10 @@
 namespace relook {
 
 ChangedPixels::ChangedPixels(std::span<const std::uint32_t> pixels, std::uint32_t width) {
-  const std::uint32_t across = (width + kTileSize - 1) / kTileSize;
-  std::map<std::uint32_t, TileMask> masks;
+  std::map<std::size_t, TileMask> masks;
   for (const std::uint32_t pixel : pixels) {
     const std::uint32_t x = pixel % width, y = pixel / width;
-    masks[y / kTileSize * across + x / kTileSize][y % kTileSize] |= std::uint64_t{1} << (x % kTileSize);
+    masks[tile_of(x, y, width)][y % kTileSize] |= std::uint64_t{1} << (x % kTileSize);
   }
   for (const auto& [tile, mask] : masks) add(tile, mask);
 }
@@ -31,7 +30,7 @@ std::size_t ChangedPixels::size() const {
 
 std::vector<std::uint32_t> ChangedPixels::indices(std::uint32_t width) const {
   std::vector<std::uint32_t> pixels;
-  const std::uint32_t across = (width + kTileSize - 1) / kTileSize;
+  const std::uint32_t across = tiles_along(width);
   for (const Tile& tile : tiles_) {
     const std::uint32_t x0 = tile.tile % across * kTileSize, y0 = tile.tile / across * kTileSize;
     for (std::uint32_t y = 0; y < kTileSize; ++y)

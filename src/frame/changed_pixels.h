@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

@@ -9,9 +9,9 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/tiles.h"
 #include "base/vector_clones.h"
 #include "frame/half_bits.h"
-#include "trace/tree/ray_tree.h"
 
 namespace relook {
 namespace {
@@ -143,7 +143,7 @@ Bytes tiled_exr(std::uint32_t width, std::uint32_t height, std::span<const ExrCh
   memory.bytes.reserve(size);
   Writer writer(memory);
   write_header(writer, width, height, channels, attributes);
-  const std::uint32_t tiles_across = (width + kTileSize - 1) / kTileSize;
+  const std::uint32_t tiles_across = tiles_along(width);
   for (std::uint32_t tile = 0; tile < tiles.size(); ++tile)
     writer.check(exr_write_tile_chunk(writer.context(), 0, static_cast<int>(tile % tiles_across),
                                       static_cast<int>(tile / tiles_across), 0, 0, tiles[tile].data(),

@@ -32,7 +32,7 @@ std::vector<unsigned char> tile_bytes(const Frame& frame, const TileRect& rect, 
   const std::size_t value_bytes = format == PixelFormat::half ? 2 : 4;
   std::vector<unsigned char> bytes(std::size_t{rect.pixels()} * kChannels.size() * value_bytes);
   unsigned char* out = bytes.data();
-  const std::size_t columns = rect.x1 - rect.x0;
+  const std::size_t columns = rect.width();
   for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
     const Rgba* row = &frame.pixels[std::size_t{y} * frame.width + rect.x0];
     for (const auto channel : kChannels) {
@@ -63,7 +63,7 @@ std::uint32_t clipped_in_row(const Rgba* pixels, std::size_t count) {
 std::uint32_t clipped_in(const Frame& frame, const TileRect& rect) {
   std::uint32_t clipped = 0;
   for (std::uint32_t y = rect.y0; y < rect.y1; ++y)
-    clipped += clipped_in_row(&frame.pixels[std::size_t{y} * frame.width + rect.x0], rect.x1 - rect.x0);
+    clipped += clipped_in_row(&frame.pixels[std::size_t{y} * frame.width + rect.x0], rect.width());
   return clipped;
 }
 

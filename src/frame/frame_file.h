@@ -12,7 +12,7 @@
 #include "base/files.h"
 #include "frame/changed_pixels.h"
 #include "frame/exr_tiles.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/tiles.h"
 #include "frame/deflate.h"
-#include "trace/tree/ray_tree.h"
 
 namespace relook {
 namespace {
@@ -88,7 +88,7 @@ FrameTiles::FrameTiles(Bytes bytes, std::string_view file) : file_(file), bytes_
     channels_.push_back({entry.name.str, entry.pixel_type == EXR_PIXEL_HALF ? 2U : 4U});
     pixel_bytes_ += channels_.back().bytes;
   }
-  const auto columns = static_cast<int>((width_ + kTileSize - 1) / kTileSize);
+  const auto columns = static_cast<int>(tiles_along(width_));
   chunks_.resize(tile_count(width_, height_));
   for (std::size_t tile = 0; tile < chunks_.size(); ++tile) {
     const auto index = static_cast<int>(tile);
@@ -129,7 +129,7 @@ std::vector<Rgba> FrameTiles::pixels(std::size_t tile) const {
   const TileRect rect = tile_rect(tile, width_, height_);
   const std::vector<unsigned char> raw = unpacked(tile);
   std::vector<Rgba> pixels(rect.pixels(), Rgba{0, 0, 0, 1});
-  const std::size_t columns = rect.x1 - rect.x0;
+  const std::size_t columns = rect.width();
   std::size_t channel_start = 0;  // bytes from the start of a row
   for (const Channel& channel : channels_) {
     const auto member = std::ranges::find(kMembers, channel.name, [](const auto& entry) { return entry.first; });

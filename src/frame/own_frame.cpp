@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "base/tiles.h"
 #include "frame/frame_file.h"
-#include "trace/tree/ray_tree.h"
 
 namespace relook {
 namespace {

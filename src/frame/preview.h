@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "frame/changed_pixels.h"
 #include "frame/display_view.h"
-#include "image/image.h"
+#include "frame/frame.h"
 
 namespace relook {
 

@@ -31,7 +31,7 @@ std::vector<std::uint64_t> triangles_hit(const Scene& scene, std::span<const std
   for (PathCursor cursor(words, layout); !cursor.at_end();) {
     const PathNode node = cursor.next();
     if (node.is_miss()) continue;
-    triangles.push_back(triangle_count(scene, node.object_word));
+    triangles.push_back(triangle_count(scene, node.object.index()));
     EntryReader entries(node.entries, layout.shadow_bits);
     for (std::size_t light = 0; light < layout.lights; ++light) {
       const ShadowState state = shadow_state(node.lights, light);
@@ -50,16 +50,10 @@ CacheContent cache_content(const SceneState& state, Image image, std::string sce
   content.document = state.document();
   content.pyramids = state.pyramids();
   content.camera = state.scene().camera;
-  content.samples = image.view.samples;
-  content.max_depth = image.view.max_depth;
-  content.shadow_bits = image.view.shadow_bits;
   content.scene_hash = std::move(scene_hash);
   content.objects = static_cast<std::uint32_t>(state.scene().objects.size());
   content.lights = static_cast<std::uint32_t>(state.scene().light_order.size());
-  content.frame = std::move(image.frame.pixels);
-  content.paths = std::move(image.paths);
-  content.trees = std::move(image.trees);
-  content.sample_colors = std::move(image.sample_colors);
+  content.image = std::move(image);
   content.storage.tunnels = tunnels.shape;
   content.around_tiles = std::move(tunnels.around);
   content.tunnels = std::move(tunnels.of_tiles);
@@ -108,23 +102,6 @@ CacheAnswer compile(CacheContent& content, std::unique_ptr<SceneState>& state) {
   return {};
 }
 
-Image take_image(CacheContent& content) {
-  Image image;
-  image.view = {content.samples, content.max_depth, content.shadow_bits};
-  image.frame = {content.camera.width, content.camera.height, std::move(content.frame)};
-  image.paths = std::move(content.paths);
-  image.trees = std::move(content.trees);
-  image.sample_colors = std::move(content.sample_colors);
-  return image;
-}
-
-void put_back(Image image, CacheContent& content) {
-  content.frame = std::move(image.frame.pixels);
-  content.paths = std::move(image.paths);
-  content.trees = std::move(image.trees);
-  content.sample_colors = std::move(image.sample_colors);
-}
-
 /// make_good() for an image; the answer is about its paths.
 CacheAnswer trace_again(const Scene& scene, const CacheLosses& losses, Image& image) {
   if (losses.empty()) return {};
@@ -160,10 +137,8 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   std::unique_ptr<SceneState> state;
   CacheAnswer answer = compile(scene_part, state);
   if (answer.fault != CacheFault::none) return answer;
-  Image image = take_image(content);
-  answer = trace_again(state->scene(), losses, image);
-  if (answer.fault == CacheFault::none) build_tunnels_again(*state, image, losses.tunnels, content);
-  put_back(std::move(image), content);
+  answer = trace_again(state->scene(), losses, content.image);
+  if (answer.fault == CacheFault::none) build_tunnels_again(*state, losses.tunnels, content);
   return answer;
 }
 
@@ -182,18 +157,18 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
     users.tile = [&](CacheContent& so_far, std::size_t tile) {
       if (!state) return;
       std::call_once(is_prepared, [&] {
-        check.emplace(state->scene(), so_far.paths, so_far.shadow_bits);
-        add_image_pieces(*residency, so_far.trees, so_far.sample_colors);
+        check.emplace(state->scene(), so_far.image.paths, so_far.image.view.shadow_bits);
+        add_image_pieces(*residency, so_far.image.trees, so_far.image.sample_colors);
       });
-      if (!check->is_sound(so_far.trees[tile])) is_broken = true;
-      note_trees(*residency, tile, so_far.trees[tile]);
-      note_colors(*residency, tile, so_far.sample_colors[tile]);
+      if (!check->is_sound(so_far.image.trees[tile])) is_broken = true;
+      note_trees(*residency, tile, so_far.image.trees[tile]);
+      note_colors(*residency, tile, so_far.image.sample_colors[tile]);
     };
   if (CacheAnswer answer = read_cache(path, content, mends ? &losses : nullptr, users);
       answer.fault != CacheFault::none)
     return answer;
   if (of_scene.fault != CacheFault::none) return of_scene;
-  Image image = take_image(content);
+  Image& image = content.image;
   if (CacheAnswer answer = trace_again(state->scene(), losses, image); answer.fault != CacheFault::none) return answer;
   const Moves rebuilt = all_of(losses.tiles, image);
   if (!check) {

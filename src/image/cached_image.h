@@ -6,8 +6,8 @@
 #include "cache/cache.h"
 #include "cache/residency/residency.h"
 #include "cache/stored_tunnels.h"
+#include "frame/image.h"
 #include "image/counters.h"
-#include "image/image.h"
 #include "image/render.h"
 #include "scene/compile/state.h"
 

@@ -47,9 +47,9 @@ bool are_tunnels(std::span<const Tunnel> built, const TileTunnels& stored, std::
 
 }  // namespace
 
-void build_tunnels_again(const SceneState& state, const Image& image, std::span<const std::size_t> tiles,
-                         CacheContent& content) {
+void build_tunnels_again(const SceneState& state, std::span<const std::size_t> tiles, CacheContent& content) {
   if (tiles.empty()) return;
+  const Image& image = content.image;
   const StorageOptions& storage = content.storage;
   const Enclosing enclosing(state, image, storage.atoms);
   ImageRegions regions({.tunnels = storage.tunnels.of_region,

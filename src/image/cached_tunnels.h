@@ -4,14 +4,13 @@
 
 #include "cache/cache.h"
 #include "cache/stored_tunnels.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/compile/state.h"
 
 namespace relook {
 
-/// Builds the tunnels of some tiles again as preprocess() built them. Requires: the trees of `image` are whole.
-void build_tunnels_again(const SceneState& state, const Image& image, std::span<const std::size_t> tiles,
-                         CacheContent& content);
+/// Builds the tunnels of some tiles again as preprocess() built them. Requires: the trees of `content` are whole.
+void build_tunnels_again(const SceneState& state, std::span<const std::size_t> tiles, CacheContent& content);
 
 /// Encloses a sample of the cells of every stored tile again. Returns how many tiles have tunnels that are not those.
 [[nodiscard]] std::size_t count_wrong_tunnels(const SceneState& state, const Image& image, StoredTunnels& stored);

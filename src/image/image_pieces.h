@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cache/residency/residency.h"
-#include "image/image.h"
+#include "frame/image.h"
 
 namespace relook {
 

@@ -30,7 +30,7 @@ std::vector<unsigned char> tile_bytes(const LayerColumns& columns, const TileRec
     bytes.resize(at + sizeof value);
     std::memcpy(bytes.data() + at, &value, sizeof value);
   };
-  const std::uint32_t width = rect.x1 - rect.x0;
+  const std::uint32_t width = rect.width();
   for (std::uint32_t first = 0; first < rect.pixels(); first += width)
     for (const std::size_t channel : order)
       for (std::uint32_t pixel = first; pixel < first + width; ++pixel) {

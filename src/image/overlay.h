@@ -2,7 +2,7 @@
 #pragma once
 #include <cstddef>
 
-#include "image/image.h"
+#include "frame/image.h"
 #include "region/path_groups.h"
 
 namespace relook {

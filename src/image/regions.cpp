@@ -19,14 +19,14 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 PathGroups ImageRegions::groups_of(const Image& image, std::size_t tile, const ClassOf& class_of) const {
   const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-  return {image.trees[tile], rect.x1 - rect.x0, image.view.samples, options_.groups, class_of};
+  return {image.trees[tile], rect.width(), image.view.samples, options_.groups, class_of};
 }
 
 void ImageRegions::build_groups(const Image& image, const ClassOf& class_of) {
   if (options_.groups == 0) return;
   groups_.resize(image.trees.size());
   parallel_for(groups_.size(), [&](std::size_t tile) { groups_[tile] = groups_of(image, tile, class_of); });
-  image_groups_ = GroupPyramid(groups_, (image.frame.width + kTileSize - 1) / kTileSize, options_.groups);
+  image_groups_ = GroupPyramid(groups_, tiles_along(image.frame.width), options_.groups);
 }
 
 void ImageRegions::offer(std::shared_ptr<StoredTunnels> stored, std::size_t tiles) {
@@ -49,7 +49,7 @@ std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const G
   if (cell_levels_.empty()) return {};
   if (has_tunnels()) offer(nullptr, 0);  // these have been used up
   add_pieces(image.trees.size());
-  lights_ = light_ends(grow.scene.scene());
+  lights_ = light_ends(grow.scene);
   mean_area_ = 0;
   std::vector<std::uint8_t> is_lost(tunnels_.size(), 0);
   parallel_for(tunnels_.size(), [&](std::size_t tile) {
@@ -63,7 +63,7 @@ std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const G
     if (stale_[tile].any() && update(image, grow, tile, stale_[tile], class_of)) is_lost[tile] = 1;
   });
   stale_.clear();
-  const auto columns = std::size_t{image.frame.width + kTileSize - 1} / kTileSize;
+  const auto columns = std::size_t{tiles_along(image.frame.width)};
   image_tunnels_ = TunnelPyramid(columns, tunnels_.size() / columns,
                                  [this](std::size_t tile, Sections& tunnel) { enclose_tile(tile, tunnel); });
   std::vector<std::size_t> lost;
@@ -153,7 +153,7 @@ bool ImageRegions::update(const Image& image, const GrowScene& grow, std::size_t
                           const ClassOf& class_of) {
   if (has_groups()) {
     const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-    groups_[tile].update(image.trees[tile], rect.x1 - rect.x0, image.view.samples, changed, class_of);
+    groups_[tile].update(image.trees[tile], rect.width(), image.view.samples, changed, class_of);
   }
   if (!has_tunnels()) {
     if (stored_) stale_[tile] |= changed;

@@ -6,7 +6,7 @@
 
 #include "cache/residency/residency.h"
 #include "cache/stored_tunnels.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "region/path_groups.h"
 #include "region/tile_tunnels.h"
 #include "region/tunnel_pyramid.h"

@@ -5,8 +5,8 @@
 #include <memory>
 #include <span>
 
+#include "frame/image.h"
 #include "image/counters.h"
-#include "image/image.h"
 #include "region/tile_tunnels.h"
 #include "region/tunnel_shape.h"
 #include "scene/scene.h"

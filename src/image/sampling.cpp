@@ -21,17 +21,6 @@ Uv position_in_pixel(std::uint32_t k, std::uint32_t n) {
 
 }  // namespace
 
-std::size_t tile_count(std::uint32_t width, std::uint32_t height) {
-  return std::size_t{(width + kTileSize - 1) / kTileSize} * ((height + kTileSize - 1) / kTileSize);
-}
-
-TileRect tile_rect(std::size_t tile, std::uint32_t width, std::uint32_t height) {
-  const std::uint32_t columns = (width + kTileSize - 1) / kTileSize;
-  const auto x = static_cast<std::uint32_t>(tile % columns) * kTileSize;
-  const auto y = static_cast<std::uint32_t>(tile / columns) * kTileSize;
-  return {x, y, std::min(x + kTileSize, width), std::min(y + kTileSize, height)};
-}
-
 PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view) : camera_(camera) {
   for (std::uint32_t k = 0; k < view.samples; ++k) in_pixel_.push_back(position_in_pixel(k, view.samples));
 }
@@ -47,14 +36,14 @@ SpawnedRay PrimaryRays::through(std::uint32_t x, std::uint32_t y, std::uint32_t 
 
 SpawnedRay PrimaryRays::ray(const TileRect& rect, std::uint32_t sample) const {
   const auto samples = static_cast<std::uint32_t>(in_pixel_.size());
-  const std::uint32_t pixel = sample / samples, width = rect.x1 - rect.x0;
+  const std::uint32_t pixel = sample / samples, width = rect.width();
   return through(rect.x0 + pixel % width, rect.y0 + pixel / width, sample % samples);
 }
 
 void PrimaryRays::append(const TileRect& rect, std::uint32_t first, std::uint32_t last,
                          std::vector<SpawnedRay>& rays) const {
   const auto samples = static_cast<std::uint32_t>(in_pixel_.size());
-  const std::uint32_t width = rect.x1 - rect.x0;
+  const std::uint32_t width = rect.width();
   std::uint32_t k = first % samples, x = first / samples % width, y = first / samples / width;
   for (std::uint32_t sample = first; sample < last; ++sample) {
     rays.push_back(through(rect.x0 + x, rect.y0 + y, k));

@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "image/image.h"
+#include "frame/image.h"
 #include "region/quadtree.h"
 #include "scene/camera.h"
 #include "trace/tree/tree_block.h"
 
 namespace relook {
 
-/// Number of samples of a tile.
-[[nodiscard]] inline std::uint32_t sample_count(const TileRect& rect, const ViewOptions& view) {
-  return rect.pixels() * view.samples;
-}
 /// Trees are shaded in chunks of samples whose nodes stay in the processor's cache, and whose memory is bounded where a
 /// sample has thousands of lights behind glass: 2048, or about as many as fit into some megabytes.
 class ChunkSize {
@@ -45,19 +41,6 @@ class ChunkSize {
   std::uint32_t samples_;
 };
 
-/// Calls visit(sample, leaf) for the samples of some leaves of a tile, in increasing order.
-template <class Visit>
-void for_each_sample(const TileRect& rect, const ViewOptions& view, const Leaves& leaves, const Visit& visit) {
-  const std::uint32_t width = rect.x1 - rect.x0, height = rect.y1 - rect.y0;
-  for (std::uint32_t y = 0; y < height; ++y)
-    for (std::uint32_t column = 0; column * kLeafSize < width; ++column) {
-      const std::uint32_t leaf = y / kLeafSize * kLeafSide + column;
-      if (!leaves.test(leaf)) continue;
-      const std::uint32_t x0 = column * kLeafSize, x1 = std::min(x0 + kLeafSize, width);
-      const std::uint32_t first = (y * width + x0) * view.samples, last = (y * width + x1) * view.samples;
-      for (std::uint32_t sample = first; sample < last; ++sample) visit(sample, leaf);
-    }
-}
 /// The primary rays of an image's samples.
 class PrimaryRays {
  public:

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/system/memory.h"
 #include "image/sampling.h"
+#include "trace/tree/pack.h"
 
 namespace relook {
 namespace {
@@ -15,28 +16,23 @@ namespace {
 bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
 
 /// `colors`: of the samples from `first` on.
-void put_on_top(const ShownSamples& shown, std::uint32_t first, std::vector<Rgba>& colors) {
+void put_on_top(const SampleColors& shown, std::uint32_t first, std::vector<Rgba>& colors) {
   const auto found = std::ranges::lower_bound(shown.samples, first);
   for (auto k = static_cast<std::size_t>(found - shown.samples.begin());
        k < shown.samples.size() && shown.samples[k] < first + colors.size(); ++k)
     colors[shown.samples[k] - first] = shown.colors[k];
 }
 
-/// The hits of a tile with those of an update in place of the old ones.
-TileTrees with_hits_of(const TileUpdate& update, TileTrees trees) {
+/// The hits of a tile with new ones in place of the old ones.
+TileTrees with_hits_of(const SampleTrees& fresh, TileTrees trees) {
   TileTrees next;
   next.first_hit.reserve(trees.first_hit.size());
   next.first_hit.push_back(0);
   next.hits.reserve(trees.hits.size());
   std::size_t k = 0;
   for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
-    std::span<const Hit> hits;
-    if (k < update.packed.size() && update.packed[k] == sample) {
-      hits = std::span(update.hits).subspan(update.first_hit[k], update.first_hit[k + 1] - update.first_hit[k]);
-      ++k;
-    } else {
-      hits = trees.hits_of(sample);
-    }
+    const bool is_new = k < fresh.samples.size() && fresh.samples[k] == sample;
+    const std::span<const Hit> hits = is_new ? fresh.hits_at(k++) : trees.hits_of(sample);
     next.hits.insert(next.hits.end(), hits.begin(), hits.end());
     next.first_hit.push_back(hit_place(next.hits.size()));
   }
@@ -84,14 +80,9 @@ void StoredImage::forget_hits(double share) {
   }
 }
 
-GrowCounters StoredImage::bring_back_hits(std::size_t tile, const Leaves& leaves, const PathTasks& tasks,
-                                          const GrowScene& scene) {
-  TileTrees& trees = image_.trees[tile];
+GrowCounters StoredImage::bring_back_hits(std::size_t tile, const Leaves& leaves, const GrowScene& scene) {
+  const TileTrees& trees = image_.trees[tile];
   GrowCounters counters;
-  if (has_hits(trees) || stays_without_hits_[tile] != 0) return counters;
-  const bool are_valid =
-      std::ranges::none_of(trees.paths, [&](PathId path) { return (tasks.of_path[path.index()] & kUpdateTree) != 0; });
-  if (!are_valid) return counters;
   const std::size_t samples = trees.paths.size();
   const auto wanted = leaves.count() * kLeafSize * kLeafSize * image_.view.samples;
   found_again_[tile] = static_cast<std::uint32_t>(std::min(found_again_[tile] + wanted, samples));
@@ -110,7 +101,7 @@ GrowCounters StoredImage::bring_back_hits(std::size_t tile, const Leaves& leaves
 void StoredImage::find_hits(std::size_t tile, const GrowScene& scene, GrowCounters& counters) {
   TileTrees& trees = image_.trees[tile];
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
-  const PrimaryRays primaries(scene.scene.scene().camera, image_.view);
+  const PrimaryRays primaries(scene.scene.camera(), image_.view);
   std::vector<Hit> hits;
   std::vector<std::uint32_t> first_hit{0}, words;
   TreeBlock block;
@@ -176,47 +167,48 @@ void StoredImage::count_segments(std::size_t tile) {
   for (PathId path : image_.trees[tile].paths) tile_segments_[tile] += index_.segments(path);
 }
 
-void StoredImage::keep_hits(TileUpdate& update) {
-  const auto lease = residency_.use(PieceKind::ray_trees, update.tile);
-  TileTrees& trees = image_.trees[update.tile];
-  const bool is_whole = update.packed.size() == trees.paths.size() && stays_without_hits_[update.tile] == 0;
-  if (!update.packed.empty() && (has_hits(trees) || is_whole)) {
-    trees = with_hits_of(update, std::move(trees));
-    note_trees(residency_, update.tile, trees, hit_seconds_);
+void StoredImage::keep_hits(NewSamples& fresh) {
+  const auto lease = residency_.use(PieceKind::ray_trees, fresh.tile);
+  TileTrees& trees = image_.trees[fresh.tile];
+  SampleTrees& packed = fresh.packed;
+  const bool is_whole = packed.samples.size() == trees.paths.size() && stays_without_hits_[fresh.tile] == 0;
+  if (!packed.samples.empty() && (has_hits(trees) || is_whole)) {
+    trees = with_hits_of(packed, std::move(trees));
+    note_trees(residency_, fresh.tile, trees, hit_seconds_);
   }
-  give_back(update.hits);
-  give_back(update.first_hit);
-  if (!update.shaded.empty()) keep_colors(update.tile, update.shaded, update.colors);
-  give_back(update.colors);
+  give_back(packed.hits);
+  give_back(packed.first_hit);
+  if (!fresh.shaded.samples.empty()) keep_colors(fresh.tile, fresh.shaded.samples, fresh.shaded.colors);
+  give_back(fresh.shaded.colors);
 }
 
-void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed) {
+void StoredImage::keep_paths(std::span<const NewSamples> fresh, const GrowScene& scene, bool lights_changed) {
   if (lights_changed) {
     image_.paths = PathTable();
     index_.clear();
     classes_.clear();
     regions_.forget_stored();
   }
-  lights_ = scene.scene.scene().light_order;
-  std::vector<std::vector<PathId>> ids(updates.size());
-  for (std::size_t k = 0; k < updates.size(); ++k)
-    for (std::uint32_t i = 0; i < updates[k].paths.size(); ++i)
-      ids[k].push_back(image_.paths.intern(updates[k].paths.words(PathId(i))));
+  lights_ = scene.scene.light_order();
+  std::vector<std::vector<PathId>> ids(fresh.size());
+  for (std::size_t k = 0; k < fresh.size(); ++k)
+    for (std::uint32_t i = 0; i < fresh[k].packed.paths.size(); ++i)
+      ids[k].push_back(image_.paths.intern(fresh[k].packed.paths.words(PathId(i))));
   index_paths();
   std::vector<std::size_t> changed;
-  for (std::size_t k = 0; k < updates.size(); ++k) {
-    const TileUpdate& update = updates[k];
-    if (update.packed.empty()) continue;
-    changed.push_back(update.tile);
-    std::vector<PathId>& paths = image_.trees[update.tile].paths;
-    for (std::size_t i = 0; i < update.packed.size(); ++i)
-      paths[update.packed[i]] = ids[k][update.packed_paths[i].index()];
+  for (std::size_t k = 0; k < fresh.size(); ++k) {
+    const SampleTrees& packed = fresh[k].packed;
+    if (packed.samples.empty()) continue;
+    changed.push_back(fresh[k].tile);
+    std::vector<PathId>& paths = image_.trees[fresh[k].tile].paths;
+    for (std::size_t i = 0; i < packed.samples.size(); ++i)
+      paths[packed.samples[i]] = ids[k][packed.path_of[i].index()];
   }
-  parallel_for(updates.size(), [&](std::size_t k) {
-    const TileUpdate& update = updates[k];
-    if (update.packed.empty()) return;
-    count_segments(update.tile);
-    update_regions(update.tile, leaves_of(update.tile, update.packed), scene);
+  parallel_for(fresh.size(), [&](std::size_t k) {
+    const std::vector<std::uint32_t>& samples = fresh[k].packed.samples;
+    if (samples.empty()) return;
+    count_segments(fresh[k].tile);
+    update_regions(fresh[k].tile, leaves_of(fresh[k].tile, samples), scene);
   });
   regions_.update_image(changed);
   segments_ = 0;
@@ -224,11 +216,11 @@ void StoredImage::keep_paths(const std::vector<TileUpdate>& updates, const GrowS
   if (image_.paths.size() > 4 * compact_paths_ + 4096) drop_unused_paths(scene);
 }
 
-void StoredImage::bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene) {
-  parallel_for(updates.size(), [&](std::size_t k) {
-    const TileUpdate& update = updates[k];
-    if (update.missed_tunnels && update.packed.empty() && residency_.is_worth_room(PieceKind::tunnels, update.tile, 0))
-      update_regions(update.tile, {}, scene);
+void StoredImage::bring_back_tunnels(std::span<const NewSamples> fresh, const GrowScene& scene) {
+  parallel_for(fresh.size(), [&](std::size_t k) {
+    const std::size_t tile = fresh[k].tile;
+    const bool is_done = !fresh[k].missed_tunnels || !fresh[k].packed.samples.empty();
+    if (!is_done && residency_.is_worth_room(PieceKind::tunnels, tile, 0)) update_regions(tile, {}, scene);
   });
 }
 
@@ -260,7 +252,7 @@ Moves StoredImage::take_rebuilt() {
 Leaves StoredImage::leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const {
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
   Leaves leaves;
-  for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image_.view.samples, rect.x1 - rect.x0));
+  for (std::uint32_t sample : samples) leaves.set(leaf_of(sample / image_.view.samples, rect.width()));
   return leaves;
 }
 
@@ -287,11 +279,11 @@ void StoredImage::keep_colors(std::size_t tile, std::span<const std::uint32_t> s
   note_colors(residency_, tile, stored);
 }
 
-void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,
+void StoredImage::refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const SampleColors* shown,
                                  TileMask& changed) {
   const auto lease = residency_.use(PieceKind::sample_colors, tile);
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
-  const std::uint32_t width = rect.x1 - rect.x0, count = image_.view.samples;
+  const std::uint32_t width = rect.width(), count = image_.view.samples;
   const Rgba* stored = image_.sample_colors[tile].data();
   if (count == 1 && shown == nullptr) {
     std::uint32_t y = 0;

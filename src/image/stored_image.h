@@ -7,22 +7,15 @@
 
 #include "cache/residency/residency.h"
 #include "frame/changed_pixels.h"
+#include "frame/image.h"
 #include "image/counters.h"
-#include "image/image.h"
 #include "image/image_pieces.h"
+#include "image/new_samples.h"
 #include "image/path_classes.h"
 #include "image/path_index.h"
 #include "image/regions.h"
-#include "replay/path_tasks.h"
-#include "replay/tile_update.h"
 
 namespace relook {
-
-/// Colours of single samples of a tile in place of the stored ones: those of an intermediate frame of a drag.
-struct ShownSamples {
-  std::vector<std::uint32_t> samples;  // increasing
-  std::vector<Rgba> colors;
-};
 
 class StoredImage {
  public:
@@ -35,11 +28,7 @@ class StoredImage {
   [[nodiscard]] const PathIndex& index() const { return index_; }
   [[nodiscard]] const PathClasses& classes() const { return classes_; }
   [[nodiscard]] const ImageRegions& regions() const { return regions_; }
-  [[nodiscard]] Residency& residency() { return residency_; }
-  /// The image side of a search for paths. `rays`: after the change; outlives it, as does this.
-  [[nodiscard]] PathSearch search(const RayScene& rays) const {
-    return {rays, image_.paths, index_, lights_, image_.view.shadow_bits, classes_};
-  }
+  [[nodiscard]] Residency& residency() const { return residency_; }
   [[nodiscard]] std::uint64_t segments() const { return segments_; }
   [[nodiscard]] std::uint64_t segments(std::size_t tile) const { return tile_segments_[tile]; }
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
@@ -60,25 +49,30 @@ class StoredImage {
   /// Keeps the hits of a share of the samples (m_r of the paper's 4.1): of tiles with the deepest trees. The others
   /// stay without.
   void forget_hits(double share);
-  /// A tile is about to be worked on at some leaves. If its hits are missing and have been, or will be, found again
-  /// sample by sample as often as the tile has samples, all are found now, and kept; not where the change reaches the
-  /// trees themselves. Tiles may be done at the same time. Requires: its ray trees are leased.
-  GrowCounters bring_back_hits(std::size_t tile, const Leaves& leaves, const PathTasks& tasks, const GrowScene& scene);
-  /// Takes over the hits and colours of an update, which has none any more. Tiles may be done at the same time; the
-  /// tile's paths are the old ones until keep_paths().
-  void keep_hits(TileUpdate& update);
-  /// Takes over the paths of updates whose hits have been kept, and keeps the regions equal to what would be built from
-  /// the trees. `scene`: in which they hold. `lights_changed`: all samples have been packed anew, since the form of
-  /// paths follows the light order.
-  void keep_paths(const std::vector<TileUpdate>& updates, const GrowScene& scene, bool lights_changed);
+  /// Are the hits of a tile gone that are to be there? Requires: its ray trees are leased.
+  [[nodiscard]] bool misses_hits(std::size_t tile) const {
+    return !has_hits(image_.trees[tile]) && stays_without_hits_[tile] == 0;
+  }
+  /// A tile that misses its hits is about to be worked on at some leaves. If they have been, or will be, found again
+  /// sample by sample as often as the tile has samples, all are found now, and kept. Tiles may be done at the same
+  /// time. Requires: its ray trees are leased and hold in `scene`.
+  GrowCounters bring_back_hits(std::size_t tile, const Leaves& leaves, const GrowScene& scene);
+  /// Takes over the hits and colours of a tile's new samples, which have none any more. Tiles may be done at the same
+  /// time; the tile's paths are the old ones until keep_paths().
+  void keep_hits(NewSamples& fresh);
+  /// Takes over the paths of new samples whose hits have been kept, and keeps the regions equal to what would be built
+  /// from the trees. `fresh`: by tile. `scene`: in which they hold. `lights_changed`: all samples have been packed
+  /// anew, since the form of paths follows the light order.
+  void keep_paths(std::span<const NewSamples> fresh, const GrowScene& scene, bool lights_changed);
   /// Of tiles that missed theirs and have no changed trees, which keep_paths() sees to. `scene`: in which trees hold.
-  void bring_back_tunnels(const std::vector<TileUpdate>& updates, const GrowScene& scene);
+  void bring_back_tunnels(std::span<const NewSamples> fresh, const GrowScene& scene);
   /// Tunnels that were worked out again since the last call: they had left memory, or paths were numbered afresh.
   [[nodiscard]] Moves take_rebuilt();
   /// The next two are for some samples of a tile, increasing; tiles may be done at the same time.
   void keep_colors(std::size_t tile, std::span<const std::uint32_t> samples, std::span<const Rgba> colors);
-  /// Works their pixels out again, adds those that differ to `changed`. `shown`: may be null.
-  void refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const ShownSamples* shown,
+  /// Works their pixels out again, adds those that differ to `changed`. `shown`: colours to take in place of the stored
+  /// ones, or null.
+  void refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const SampleColors* shown,
                       TileMask& changed);
 
  private:

@@ -12,14 +12,14 @@ TreeEncloser::TreeEncloser(const Image& image, const GrowScene& grow, std::size_
       grow_(grow),
       trees_(image.trees[tile]),
       rect_(tile_rect(tile, image.frame.width, image.frame.height)),
-      primaries_(grow.scene.scene().camera, image.view),
+      primaries_(grow.scene.camera(), image.view),
       class_of_(class_of),
       set_(most) {}
 
 std::span<const Tunnel> TreeEncloser::of(const RegionSquare& square) {
   set_.clear();
-  const std::uint32_t width = rect_.x1 - rect_.x0, samples = image_.view.samples;
-  for (std::uint32_t y = square.y; y < std::min(square.y + square.size, rect_.y1 - rect_.y0); ++y)
+  const std::uint32_t width = rect_.width(), samples = image_.view.samples;
+  for (std::uint32_t y = square.y; y < std::min(square.y + square.size, rect_.height()); ++y)
     for (std::uint32_t x = square.x; x < std::min(square.x + square.size, width); ++x)
       for (std::uint32_t k = 0; k < samples; ++k) add((y * width + x) * samples + k);
   return set_.tunnels();

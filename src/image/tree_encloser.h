@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cache/residency/residency.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "image/sampling.h"
 #include "region/path_groups.h"
 #include "region/tile_tunnels.h"

@@ -1,11 +1,12 @@
 // The image quadtree inside one tile (paper 3.1): square regions of pixels, up to the tile. Groups end at leaves of 4x4
 // pixels; where tunnels end is a choice (4.1.3).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstdint>
 
-#include "trace/tree/ray_tree.h"
+#include "base/tiles.h"
 
 namespace relook {
 
@@ -89,6 +90,20 @@ void for_each_leaf_of(const TileGrid& grid, std::uint32_t cell, const Visit& vis
   const RegionSquare square = grid.square_of(cell);
   for (std::uint32_t y = square.y / kLeafSize; y * kLeafSize < square.y + square.size; ++y)
     for (std::uint32_t x = square.x / kLeafSize; x * kLeafSize < square.x + square.size; ++x) visit(y * kLeafSide + x);
+}
+
+/// Calls visit(sample, leaf) for the samples of some leaves of a tile, in increasing order. `samples`: of a pixel.
+template <class Visit>
+void for_each_sample(const TileRect& rect, std::uint32_t samples, const Leaves& leaves, const Visit& visit) {
+  const std::uint32_t width = rect.width();
+  for (std::uint32_t y = 0; y < rect.height(); ++y)
+    for (std::uint32_t column = 0; column * kLeafSize < width; ++column) {
+      const std::uint32_t leaf = y / kLeafSize * kLeafSide + column;
+      if (!leaves.test(leaf)) continue;
+      const std::uint32_t x0 = column * kLeafSize, x1 = std::min(x0 + kLeafSize, width);
+      const std::uint32_t first = (y * width + x0) * samples, last = (y * width + x1) * samples;
+      for (std::uint32_t sample = first; sample < last; ++sample) visit(sample, leaf);
+    }
 }
 
 /// How a search went through regions: whose contents were looked at, and which were left out with all below them.

@@ -18,16 +18,11 @@ std::uint64_t regions_of(std::uint32_t width, std::uint32_t height, std::uint32_
 /// The sizes of all tiles.
 struct TileSizes {
   std::uint32_t width, height, columns, rows;
-  TileSizes(std::uint32_t w, std::uint32_t h)
-      : width(w),
-        height(h),
-        columns(static_cast<std::uint32_t>(divided(w, kTileSize))),
-        rows(static_cast<std::uint32_t>(divided(h, kTileSize))) {}
+  TileSizes(std::uint32_t w, std::uint32_t h) : width(w), height(h), columns(tiles_along(w)), rows(tiles_along(h)) {}
   [[nodiscard]] std::size_t count() const { return std::size_t{columns} * rows; }
   [[nodiscard]] std::uint64_t regions(std::size_t tile, std::uint32_t cells) const {
-    const auto x = static_cast<std::uint32_t>(tile % columns) * kTileSize;
-    const auto y = static_cast<std::uint32_t>(tile / columns) * kTileSize;
-    return regions_of(std::min(width - x, kTileSize), std::min(height - y, kTileSize), cells);
+    const TileRect rect = tile_rect(tile, width, height);
+    return regions_of(rect.width(), rect.height(), cells);
   }
 };
 

@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "color/shade.h"
-#include "image/path_classes.h"
-#include "image/path_index.h"
+#include "image/stored_image.h"
 #include "replay/change.h"
 
 namespace relook {
@@ -25,13 +24,18 @@ struct PathTasks {
 
 /// The image side of a search.
 struct PathSearch {
-  const RayScene& rays;  // after the change
+  const ColorScene& rays;  // after the change
   const PathTable& paths;
   const PathIndex& index;              // of `paths`
   const std::vector<LightId>& lights;  // light order of the paths
   std::uint32_t shadow_bits;           // of the paths
   const PathClasses& classes;
 };
+/// Both outlive it. `rays`: after the change.
+[[nodiscard]] inline PathSearch search_in(const StoredImage& stored, const ColorScene& rays) {
+  const Image& image = stored.image();
+  return {rays, image.paths, stored.index(), stored.lights(), image.view.shadow_bits, stored.classes()};
+}
 
 [[nodiscard]] PathTasks find_path_tasks(const PathSearch& search, const StepChange& change, ProgramTable& programs);
 

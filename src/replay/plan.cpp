@@ -5,7 +5,6 @@
 
 #include "edit/journal_walk.h"
 #include "replay/replay.h"
-#include "report/report.h"
 
 namespace relook {
 namespace {

@@ -9,7 +9,7 @@
 #include "edit/apply.h"
 #include "edit/frame_place.h"
 #include "edit/journal.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "image/render.h"
 #include "scene/compile/state.h"
 

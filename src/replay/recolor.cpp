@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "image/image_pieces.h"
 #include "image/sampling.h"
+#include "replay/tile_update.h"
 
 namespace relook {
 namespace {
@@ -15,30 +16,32 @@ namespace {
 /// Trees are compressed in blocks of about this many: long runs for evaluation, few enough to stay in the cache.
 constexpr std::size_t kBlockSamples = 4096;
 
-class TileCompressor {
+class TreeCompressor {
  public:
-  TileCompressor(const UpdatePass& pass, std::size_t tile, CompressedImage& image, TileTools& tools)
-      : p_(pass),
-        trees_(pass.image.trees[tile]),
-        rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
-        primaries_(pass.grow.scene.scene().camera, pass.image.view),
-        image_(image),
+  TreeCompressor(const UpdatePass& pass, std::size_t tile, ColorTreeSet& set, TileTools& tools)
+      : stored_(pass.stored),
+        image_(pass.stored.image()),
+        what_(pass.what),
+        trees_(image_.trees[tile]),
+        rect_(tile_rect(tile, image_.frame.width, image_.frame.height)),
+        primaries_(what_.grow.scene.camera(), image_.view),
+        set_(set),
         shader_(tools.shader),
         block_(tools.block) {}
 
-  CompressedTile compress(const Leaves& leaves) {
+  TileColorTrees compress(const Leaves& leaves) {
     const auto start = std::chrono::steady_clock::now();
-    for_each_sample(rect_, p_.image.view, leaves, [&](std::uint32_t sample, std::uint32_t) {
+    for_each_sample(rect_, image_.view.samples, leaves, [&](std::uint32_t sample, std::uint32_t) {
       const PathId path = trees_.paths[sample];
-      if ((p_.tasks.of_path[path.index()] & kShade) == 0) return;
-      const StoredTree stored{PathCursor(p_.image.paths.words(path), {p_.lights.size(), p_.grow.shadow_bits}),
+      if ((what_.tasks.of_path[path.index()] & kShade) == 0) return;
+      const StoredTree stored{PathCursor(image_.paths.words(path), {stored_.lights().size(), what_.grow.shadow_bits}),
                               trees_.kept_hits_of(sample)};
-      roots_.push_back(expand_tree(p_.grow, primaries_.ray(rect_, sample), sample, stored, block_, counters_));
+      roots_.push_back(expand_tree(what_.grow, primaries_.ray(rect_, sample), sample, stored, block_, counters_));
       if (roots_.size() == kBlockSamples) flush();
     });
     flush();
     for (const std::uint32_t sample : tile_.samples)
-      tile_.leaves.set(leaf_of(sample / p_.image.view.samples, rect_.x1 - rect_.x0));
+      tile_.leaves.set(leaf_of(sample / image_.view.samples, rect_.width()));
     tile_.is_valid = true;
     tile_.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(tile_);
@@ -48,7 +51,7 @@ class TileCompressor {
  private:
   void flush() {
     if (roots_.empty()) return;
-    CompressedBlock block = shader_.compress(block_, roots_, image_.parameters, image_.splits);
+    CompressedBlock block = shader_.compress(block_, roots_, set_.parameters, set_.splits);
     for (const std::uint32_t root : block.roots) tile_.samples.push_back(block_.nodes[roots_[root]].sample);
     tile_.bytes += block.bytes();
     if (!block.roots.empty()) tile_.blocks.push_back(std::move(block));
@@ -56,20 +59,22 @@ class TileCompressor {
     roots_.clear();
   }
 
-  const UpdatePass& p_;
+  const StoredImage& stored_;
+  const Image& image_;
+  const UpdatePass::What& what_;
   const TileTrees& trees_;
   TileRect rect_;
   PrimaryRays primaries_;
-  CompressedImage& image_;
+  ColorTreeSet& set_;
   Shader& shader_;
   TreeBlock& block_;
   std::vector<std::uint32_t> roots_;
   GrowCounters counters_;
-  CompressedTile tile_;
+  TileColorTrees tile_;
 };
 
 /// Evaluates a valid tile and brings colours and frame up to date: the mask of its changed pixels.
-TileMask recolor_tile(const CompressedTile& compressed, std::size_t tile, const Scene& scene, StoredImage& stored,
+TileMask recolor_tile(const TileColorTrees& compressed, std::size_t tile, const Scene& scene, StoredImage& stored,
                       ColorMemory& memory) {
   const auto lease = stored.residency().use(PieceKind::sample_colors, tile);
   std::span<const std::uint32_t> samples(compressed.samples);
@@ -98,6 +103,42 @@ class Room {
   std::atomic<std::int64_t> left_;
 };
 
+/// What became of a tile.
+struct Outcome {
+  TileMask changed{};
+  std::size_t samples = 0;
+  GrowCounters grown;
+  Moves rebuilt, evicted;
+};
+
+/// Compresses the trees of a tile that are not valid. `leaves`: with samples that may depend on the parameters.
+void compress_tile(const UpdatePass& pass, ReplayParts& parts, std::size_t tile, const Leaves& leaves,
+                   ColorTreeSet& kept, Pool<TileTools>& tools, Outcome& outcome) {
+  const auto own = tools.take([&] { return std::make_unique<TileTools>(parts.rays, parts.programs); });
+  const auto lease = parts.residency.use(PieceKind::ray_trees, tile);
+  outcome.grown = bring_back_hits(pass, tile, leaves);
+  TreeCompressor compressor(pass, tile, kept, *own);
+  TileColorTrees& trees = kept.tiles[tile];
+  parts.color_trees.keep(trees, compressor.compress(leaves));
+  outcome.grown += compressor.counters();
+  if (std::exchange((*kept.were_built)[tile], std::uint8_t{1}) != 0)
+    outcome.rebuilt = {0, 0, trees.samples.size(), 0, trees.bytes};
+}
+
+void count_outcomes(const std::vector<Outcome>& outcomes, std::span<const std::size_t> tiles, StepResult& result) {
+  Counters& counters = result.counters;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    const Outcome& outcome = outcomes[i];
+    result.changed_pixels.add(tiles[i], outcome.changed);
+    counters.samples_affected += outcome.samples;
+    counters.object_rays += outcome.grown.object_rays;
+    counters.rebuilt += rebuilt_trees(outcome.grown);
+    counters.rebuilt += outcome.rebuilt;
+    counters.evicted += outcome.evicted;
+  }
+  counters.color_trees_evaluated = counters.samples_affected;
+}
+
 }  // namespace
 
 /// What invalid tiles are built from; empty if there are none.
@@ -106,35 +147,34 @@ struct Recolorer::Search {
   std::vector<TileWork> works;  // by tile
 };
 
-Recolorer::Search Recolorer::search(const StepChange& change, const CompressedImage& kept, StepResult& result,
+Recolorer::Search Recolorer::search(const StepChange& change, const ColorTreeSet& kept, StepResult& result,
                                     StopWatch& watch) {
   Search search;
   if (!kept.is_valid()) {
-    search.tasks = selection_.find_tasks(change, stored_.search(rays_), programs_);
+    search.tasks = parts_.selection.find_tasks(change, search_in(parts_.stored, parts_.rays), parts_.programs);
     search.works.resize(kept.tiles.size());
   }
   watch.lap(result.seconds.select);
   return search;
 }
 
-void Recolorer::expect(const CompressedImage& kept, std::size_t tile) const {
-  if (!kept.tiles[tile].is_valid) stored_.residency().expect(PieceKind::ray_trees, tile);
-  stored_.residency().expect(PieceKind::sample_colors, tile);
+void Recolorer::expect(const ColorTreeSet& kept, std::size_t tile) const {
+  if (!kept.tiles[tile].is_valid) parts_.residency.expect(PieceKind::ray_trees, tile);
+  parts_.residency.expect(PieceKind::sample_colors, tile);
 }
 
 void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch) {
-  CompressedImage& kept = compressed_.of(change.colors.parameters, stored_.residency().change());
-  const std::vector<Leaves>* known_leaves = selection_.leaves(change);
+  ColorTreeSet& kept = parts_.color_trees.of(change.colors.parameters, parts_.residency.change());
+  const std::vector<Leaves>* known_leaves = parts_.selection.leaves(change);
   Search found = search(change, kept, result, watch);
-  const Image& image = stored_.image();
-  const GrowScene grow{rays_, nullptr, image.view.max_depth, image.view.shadow_bits, &objects_};
-  const std::vector<bool> near_tiles;
-  std::vector<bool> grouped_tiles;
+  const GrowScene grow = parts_.grow();
+  UpdatePass::Where where{.known_leaves = known_leaves};
   if (!found.works.empty() && known_leaves == nullptr)
-    grouped_tiles = tiles_with_tasks(stored_.regions(), found.tasks, result.counters.by_groups);
-  const UpdatePass pass{image,           stored_.lights(),   grow,    change,     found.tasks,   stored_.classes(),
-                        stored_.index(), stored_.regions(),  nullptr, near_tiles, grouped_tiles, known_leaves,
-                        programs_,       stored_.residency()};
+    where.grouped_tiles = tiles_with_tasks(parts_.stored.regions(), found.tasks, result.counters.by_groups);
+  const UpdatePass pass{.stored = parts_.stored,
+                        .programs = parts_.programs,
+                        .what = {.change = change, .tasks = found.tasks, .scene = parts_.rays, .grow = grow},
+                        .where = std::move(where)};
   parallel_for(found.works.size(), [&](std::size_t tile) {
     if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);
   });
@@ -149,54 +189,37 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
   }
   watch.lap(result.seconds.test);
 
-  std::vector<TileMask> changed(tiles.size());
-  std::vector<std::size_t> samples(tiles.size());
-  std::vector<GrowCounters> grown(tiles.size());
-  std::vector<Moves> rebuilt(tiles.size()), evicted(tiles.size());
+  std::vector<Outcome> outcomes(tiles.size());
   result.dependent.resize(kept.tiles.size());
   result.touched.resize(kept.tiles.size());
-  Room room(compressed_.most_samples());
+  Room room(parts_.color_trees.most_samples());
   Pool<TileTools> tools;
   for (std::size_t i = 0; i < std::min(kTilesAhead, tiles.size()); ++i) expect(kept, tiles[i]);
   parallel_for(tiles.size(), [&](std::size_t i) {
     if (i + kTilesAhead < tiles.size()) expect(kept, tiles[i + kTilesAhead]);
-    CompressedTile& tile = kept.tiles[tiles[i]];
-    if (!tile.is_valid) {
-      const auto own = tools.take([&] { return std::make_unique<TileTools>(rays_, programs_); });
-      const auto lease = stored_.residency().use(PieceKind::ray_trees, tiles[i]);
-      grown[i] = stored_.bring_back_hits(tiles[i], found.works[tiles[i]].leaves, found.tasks, grow);
-      TileCompressor compressor(pass, tiles[i], kept, *own);
-      compressed_.keep(tile, compressor.compress(found.works[tiles[i]].leaves));
-      grown[i] += compressor.counters();
-      if (std::exchange((*kept.were_built)[tiles[i]], std::uint8_t{1}) != 0)
-        rebuilt[i] = {0, 0, tile.samples.size(), 0, tile.bytes};
-    }
+    const std::size_t tile = tiles[i];
+    TileColorTrees& trees = kept.tiles[tile];
+    Outcome& outcome = outcomes[i];
+    if (!trees.is_valid) compress_tile(pass, parts_, tile, found.works[tile].leaves, kept, tools, outcome);
     if (evaluates) {
       const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
-      changed[i] = recolor_tile(tile, tiles[i], rays_.scene(), stored_, *memory);
+      outcome.changed = recolor_tile(trees, tile, parts_.rays.scene(), parts_.stored, *memory);
     }
-    stored_.residency().note_use_of_other("color_trees", kept.number * kept.tiles.size() + tiles[i], tile.bytes,
-                                          tile.build_seconds);
-    samples[i] = tile.samples.size();
-    result.dependent[tiles[i]] = tile.leaves;
-    if (room.take(samples[i]) && stored_.residency().make_room(0)) return;
-    evicted[i] = {0, 0, samples[i], 0, tile.bytes};
-    compressed_.drop(tile);  // at once, so that what cannot be kept does not pile up
+    parts_.residency.note_use_of_other("color_trees", kept.number * kept.tiles.size() + tile, trees.bytes,
+                                       trees.build_seconds);
+    outcome.samples = trees.samples.size();
+    result.dependent[tile] = trees.leaves;
+    if (room.take(outcome.samples) && parts_.residency.make_room(0)) return;
+    outcome.evicted = {0, 0, outcome.samples, 0, trees.bytes};
+    parts_.color_trees.drop(trees);  // at once, so that what cannot be kept does not pile up
   });
-  for (std::size_t i = 0; i < tiles.size(); ++i) {
-    result.changed_pixels.add(tiles[i], changed[i]);
-    result.counters.samples_affected += samples[i];
-    result.counters.object_rays += grown[i].object_rays;
-    result.counters.rebuilt += rebuilt_trees(grown[i]);
-    result.counters.rebuilt += rebuilt[i];
-    result.counters.evicted += evicted[i];
-  }
-  result.counters.color_trees_evaluated = result.counters.samples_affected;
+  count_outcomes(outcomes, tiles, result);
   if (!found.works.empty())
-    selection_.keep(change, std::move(found.tasks), result.dependent, result.seconds.select + result.seconds.test);
-  const std::uint64_t bytes_before = compressed_.bytes();
-  result.counters.evicted.color_trees += compressed_.trim();
-  result.counters.evicted.bytes += bytes_before - compressed_.bytes();
+    parts_.selection.keep(change, std::move(found.tasks), result.dependent,
+                          result.seconds.select + result.seconds.test);
+  const std::uint64_t bytes_before = parts_.color_trees.bytes();
+  result.counters.evicted.color_trees += parts_.color_trees.trim();
+  result.counters.evicted.bytes += bytes_before - parts_.color_trees.bytes();
   watch.lap(result.seconds.evaluate);
 }
 

@@ -2,25 +2,15 @@
 // the parameters change first, and afterwards only the residual programs are run.
 #pragma once
 #include "base/pool.h"
-#include "image/stored_image.h"
-#include "replay/compressed_edits.h"
-#include "replay/kept_selection.h"
+#include "replay/replay_parts.h"
 #include "replay/step_result.h"
-#include "replay/tile_update.h"
 
 namespace relook {
 
 /// Works on the parts of a replay, which outlive it.
 class Recolorer {
  public:
-  Recolorer(StoredImage& stored, const RayScene& rays, const ObjectLevels& objects, ProgramTable& programs,
-            KeptSelection& selection, CompressedEdits& compressed)
-      : stored_(stored),
-        rays_(rays),
-        objects_(objects),
-        programs_(programs),
-        selection_(selection),
-        compressed_(compressed) {}
+  explicit Recolorer(ReplayParts& parts) : parts_(parts) {}
 
   /// Compresses what depends on the parameters of `change`, unless it is already, and evaluates it. Requires:
   /// is_compressible(change.colors); no tree is touched; nothing is shown on top of the image.
@@ -34,18 +24,12 @@ class Recolorer {
 
  private:
   struct Search;
-  [[nodiscard]] Search search(const StepChange& change, const CompressedImage& kept, StepResult& result,
-                              StopWatch& watch);
+  [[nodiscard]] Search search(const StepChange& change, const ColorTreeSet& kept, StepResult& result, StopWatch& watch);
   /// The tile's turn comes soon.
-  void expect(const CompressedImage& kept, std::size_t tile) const;
+  void expect(const ColorTreeSet& kept, std::size_t tile) const;
   void run(const StepChange& change, bool evaluates, StepResult& result, StopWatch& watch);
 
-  StoredImage& stored_;
-  const RayScene& rays_;
-  const ObjectLevels& objects_;
-  ProgramTable& programs_;
-  KeptSelection& selection_;
-  CompressedEdits& compressed_;
+  ReplayParts& parts_;
   Pool<ColorMemory> memory_;
 };
 

@@ -8,7 +8,7 @@
 
 #include "cache/residency/residency.h"
 #include "cache/stored_tunnels.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "image/regions.h"
 #include "replay/step_result.h"
 #include "scene/compile/state.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "edit/apply.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/compile/state.h"
 
 namespace relook {

@@ -2,7 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 
@@ -146,12 +145,6 @@ Json options_json(const RunReport& report) {
 }
 
 std::string_view program_version() { return RELOOK_VERSION; }
-
-ChangeClass combined(ChangeClass a, ChangeClass b) {
-  const auto is = [&](ChangeClass kind) { return a == kind || b == kind; };
-  if (is(ChangeClass::mixed) || (is(ChangeClass::optical) && is(ChangeClass::geometric))) return ChangeClass::mixed;
-  return std::max(a, b);
-}
 
 ChangeClass change_class_of(std::string_view name) {
   for (const ChangeClass change : {ChangeClass::optical, ChangeClass::geometric, ChangeClass::mixed})

@@ -12,7 +12,7 @@
 #include "edit/apply.h"
 #include "edit/frame_place.h"
 #include "image/counters.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/camera.h"
 
 namespace relook {
@@ -115,9 +115,6 @@ struct RunReport {
 /// Its entry of `steps`, and its `options`.
 [[nodiscard]] Json step_json(const StepReport& step);
 [[nodiscard]] Json options_json(const RunReport& report);
-
-/// The class of several edits together, by the rule of classify(): that of a drag's release.
-[[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
 
 /// The class of this name; colour for any other.
 [[nodiscard]] ChangeClass change_class_of(std::string_view name);

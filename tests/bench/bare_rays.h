@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/scene.h"
 
 namespace relook {

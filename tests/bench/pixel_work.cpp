@@ -22,12 +22,11 @@ struct TileSamples {
 
 /// The tiles that hold any of the pixels.
 std::vector<TileSamples> by_tile(const Camera& camera, const ViewOptions& view, std::span<const std::uint32_t> pixels) {
-  const std::uint32_t across = (camera.width + kTileSize - 1) / kTileSize;
   std::vector<TileSamples> tiles(tile_count(camera.width, camera.height));
   for (std::size_t tile = 0; tile < tiles.size(); ++tile) tiles[tile].tile = tile;
   for (std::uint32_t pixel : pixels) {
     const std::uint32_t x = pixel % camera.width, y = pixel / camera.width;
-    const std::size_t tile = std::size_t{y / kTileSize} * across + x / kTileSize;
+    const std::size_t tile = tile_of(x, y, camera.width);
     const TileRect rect = tile_rect(tile, camera.width, camera.height);
     const std::uint32_t first = ((y - rect.y0) * (rect.x1 - rect.x0) + x - rect.x0) * view.samples;
     for (std::uint32_t k = 0; k < view.samples; ++k) tiles[tile].samples.push_back(first + k);
@@ -39,11 +38,11 @@ std::vector<TileSamples> by_tile(const Camera& camera, const ViewOptions& view, 
 /// Traces and shades samples; one per thread.
 class SampleRenderer {
  public:
-  SampleRenderer(const GrowScene& grow, const ViewOptions& view, ProgramTable& programs)
-      : grow_(grow), primaries_(grow.scene.scene().camera, view), shader_(grow.scene, programs) {}
+  SampleRenderer(const GrowScene& grow, const ColorScene& scene, const ViewOptions& view, ProgramTable& programs)
+      : grow_(grow), primaries_(scene.camera(), view), shader_(scene, programs) {}
 
   void render(const TileSamples& tile) {
-    const Camera& camera = grow_.scene.scene().camera;
+    const Camera& camera = grow_.scene.camera();
     const TileRect rect = tile_rect(tile.tile, camera.width, camera.height);
     for (std::size_t first = 0; first < tile.samples.size(); first += kChunkSamples) {
       const std::size_t count = std::min(kChunkSamples, tile.samples.size() - first);
@@ -73,7 +72,7 @@ class SampleRenderer {
 
 double time_pixel_work(const Scene& scene, const ViewOptions& view, std::span<const std::uint32_t> pixels) {
   const std::vector<TileSamples> tiles = by_tile(scene.camera, view, pixels);
-  const RayScene rays(scene);
+  const ColorScene rays(scene);
   Tracer tracer(view.shadow_bits > 0);
   const Tracer::TopLevel level = tracer.build(rays);
   const GrowScene grow{rays, &level, view.max_depth, view.shadow_bits};
@@ -81,7 +80,7 @@ double time_pixel_work(const Scene& scene, const ViewOptions& view, std::span<co
   return fastest(3, [&] {
     Pool<SampleRenderer> renderers;
     parallel_for(tiles.size(), [&](std::size_t i) {
-      const auto renderer = renderers.take([&] { return std::make_unique<SampleRenderer>(grow, view, programs); });
+      const auto renderer = renderers.take([&] { return std::make_unique<SampleRenderer>(grow, rays, view, programs); });
       renderer->render(tiles[i]);
     });
   });

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/scene.h"
 
 namespace relook {

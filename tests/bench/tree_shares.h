@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "image/image.h"
+#include "frame/image.h"
 
 namespace relook {
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -74,13 +75,14 @@ CacheContent small_content(std::uint32_t samples = 1) {
   content.camera.width = kWidth;
   content.camera.height = kHeight;
   content.camera.half_width = 0.1F;
-  content.samples = samples;
+  content.image.view.samples = samples;
   content.scene_hash = hash128(bytes_of("scene"));
   content.objects = 1;
   content.lights = 1;
-  content.frame.resize(kWidth * kHeight);
-  for (std::size_t i = 0; i < content.frame.size(); ++i) content.frame[i] = Rgba(static_cast<float>(i), 0.1F, -0.0F, 1);
-  for (const auto& words : three_paths()) content.paths.intern(words);
+  content.image.frame = {kWidth, kHeight, std::vector<Rgba>(kWidth * kHeight)};
+  std::vector<Rgba>& pixels = content.image.frame.pixels;
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = Rgba(static_cast<float>(i), 0.1F, -0.0F, 1);
+  for (const auto& words : three_paths()) content.image.paths.intern(words);
   for (std::uint32_t tile = 0; tile < 2; ++tile) {
     const std::uint32_t x0 = tile * 64, columns = tile == 0 ? 64 : kWidth - 64;
     TileTrees trees;
@@ -92,11 +94,11 @@ CacheContent small_content(std::uint32_t samples = 1) {
         trees.hits.push_back({0, 0.25F + 0.001F * static_cast<float>(i), 0.5F});
       trees.first_hit.push_back(static_cast<std::uint32_t>(trees.hits.size()));
       const std::uint32_t pixel = i / samples;
-      const Rgba color = content.frame[pixel / columns * kWidth + x0 + pixel % columns];
+      const Rgba color = pixels[pixel / columns * kWidth + x0 + pixel % columns];
       colors.push_back(samples == 1 ? color : color * static_cast<float>(1 + i % samples));
     }
-    content.trees.push_back(std::move(trees));
-    content.sample_colors.push_back(std::move(colors));
+    content.image.trees.push_back(std::move(trees));
+    content.image.sample_colors.push_back(std::move(colors));
   }
   return content;
 }
@@ -134,14 +136,14 @@ void expect_equal(const CacheContent& a, const CacheContent& b) {
   }
   EXPECT_EQ(a.scene_hash, b.scene_hash);
   EXPECT_EQ(options_hash(a), options_hash(b));
-  EXPECT_TRUE(same_bits(a.frame, b.frame));
-  EXPECT_TRUE(std::ranges::equal(a.paths.all_words(), b.paths.all_words()));
-  ASSERT_EQ(a.trees.size(), b.trees.size());
-  for (std::size_t tile = 0; tile < a.trees.size(); ++tile) {
-    EXPECT_EQ(a.trees[tile].paths, b.trees[tile].paths);
-    EXPECT_EQ(a.trees[tile].first_hit, b.trees[tile].first_hit);
-    EXPECT_EQ(a.trees[tile].hits, b.trees[tile].hits);
-    EXPECT_TRUE(same_bits(a.sample_colors[tile], b.sample_colors[tile]));
+  EXPECT_TRUE(same_bits(a.image.frame.pixels, b.image.frame.pixels));
+  EXPECT_TRUE(std::ranges::equal(a.image.paths.all_words(), b.image.paths.all_words()));
+  ASSERT_EQ(a.image.trees.size(), b.image.trees.size());
+  for (std::size_t tile = 0; tile < a.image.trees.size(); ++tile) {
+    EXPECT_EQ(a.image.trees[tile].paths, b.image.trees[tile].paths);
+    EXPECT_EQ(a.image.trees[tile].first_hit, b.image.trees[tile].first_hit);
+    EXPECT_EQ(a.image.trees[tile].hits, b.image.trees[tile].hits);
+    EXPECT_TRUE(same_bits(a.image.sample_colors[tile], b.image.sample_colors[tile]));
   }
 }
 
@@ -186,7 +188,7 @@ TEST(Cache, round_trip_restores_every_bit) {
 TEST(Cache, one_sample_colors_that_differ_from_pixels_survive) {
   const ScratchFolder folder("cache");
   CacheContent written = small_content();
-  written.sample_colors[1][2].g = -7;
+  written.image.sample_colors[1][2].g = -7;
   write_cache(folder / "c", written);
   CacheContent read;
   ASSERT_EQ(read_cache(folder / "c", read).fault, CacheFault::none);
@@ -276,10 +278,10 @@ TEST(Cache, files_of_another_scene_or_view_are_refused) {
   EXPECT_EQ(fault_of(folder / "c"), CacheFault::other_scene);
   write_cache(folder / "c", small_content());
   change_manifest(folder / "c", [](Manifest& manifest) {
-    manifest.max_depth = 3;
+    manifest.view.max_depth = 3;
     CacheContent content;
     content.camera = manifest.camera;
-    content.max_depth = 3;
+    content.image.view.max_depth = 3;
     manifest.identity.options_hash = options_hash(content);
   });
   EXPECT_EQ(fault_of(folder / "c"), CacheFault::other_options);
@@ -289,15 +291,15 @@ TEST(Cache, shadow_counters_are_kept_and_checked) {
   const ScratchFolder folder("cache");
   const auto counted_content = [](std::uint32_t counter) {
     CacheContent content = small_content();
-    content.shadow_bits = 2;
-    const std::uint32_t blocked = content.paths.intern(std::vector<std::uint32_t>{0, 0, 3, 1, 0, 0, counter}).index();
-    std::ranges::replace(content.trees[0].paths, PathId(1), PathId(blocked));  // one hit, either way
+    content.image.view.shadow_bits = 2;
+    const PathId blocked = content.image.paths.intern(std::vector<std::uint32_t>{0, 0, 3, 1, 0, 0, counter});
+    std::ranges::replace(content.image.trees[0].paths, PathId(1), blocked);  // one hit, either way
     return content;
   };
   write_cache(folder / "c", counted_content(4));
   CacheContent read;
   ASSERT_EQ(read_cache(folder / "c", read).fault, CacheFault::none);
-  EXPECT_EQ(read.shadow_bits, 2U);
+  EXPECT_EQ(read.image.view.shadow_bits, 2U);
   expect_equal(counted_content(4), read);
   write_cache(folder / "c", counted_content(5));
   EXPECT_EQ(fault_of(folder / "c"), CacheFault::damaged);
@@ -322,13 +324,11 @@ TEST(Cache, indices_out_of_range_are_refused_although_every_hash_fits) {
   EXPECT_EQ(fault_after([](CacheContent& c) { c.document.assets->mesh_primitives["Triangle"] = {MeshId(1)}; }),
             CacheFault::damaged);
   EXPECT_EQ(fault_after([](CacheContent& c) { c.objects = 0; }), CacheFault::damaged);
-  EXPECT_EQ(fault_after([](CacheContent& c) { c.trees[0].paths[1] = PathId(3); }), CacheFault::damaged);
-  EXPECT_EQ(fault_after([](CacheContent& c) { c.trees[0].paths[0] = PathId(1); }), CacheFault::damaged);
-  EXPECT_EQ(fault_after([](CacheContent& c) { c.trees[1].hits.pop_back(); }), CacheFault::damaged);
-  EXPECT_EQ(fault_after([](CacheContent& c) { c.trees[1].hits[0].u = std::numeric_limits<float>::infinity(); }),
-            CacheFault::damaged);
-  EXPECT_EQ(fault_after([](CacheContent& c) { c.frame[5].r = std::numeric_limits<float>::quiet_NaN(); }),
-            CacheFault::damaged);
+  EXPECT_EQ(fault_after([](CacheContent& c) { c.image.trees[0].paths[1] = PathId(3); }), CacheFault::damaged);
+  EXPECT_EQ(fault_after([](CacheContent& c) { c.image.trees[0].paths[0] = PathId(1); }), CacheFault::damaged);
+  EXPECT_EQ(fault_after([](CacheContent& c) { c.image.trees[1].hits.pop_back(); }), CacheFault::damaged);
+  EXPECT_EQ(fault_after([](CacheContent& c) { c.image.trees[1].hits[0].u = INFINITY; }), CacheFault::damaged);
+  EXPECT_EQ(fault_after([](CacheContent& c) { c.image.frame.pixels[5].r = NAN; }), CacheFault::damaged);
 }
 
 TEST(Cache, names_in_the_manifest_cannot_leave_the_folder) {

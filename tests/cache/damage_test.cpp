@@ -22,14 +22,16 @@ bool same_colors(const std::vector<Rgba>& a, const std::vector<Rgba>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Rgba)) == 0;
 }
 
-bool same_image(const CacheContent& a, const CacheContent& b) {
-  bool same = same_colors(a.frame, b.frame) && std::ranges::equal(a.paths.all_words(), b.paths.all_words()) &&
+bool same_image(const CacheContent& first, const CacheContent& second) {
+  const Image &a = first.image, &b = second.image;
+  bool same = same_colors(a.frame.pixels, b.frame.pixels) &&
+              std::ranges::equal(a.paths.all_words(), b.paths.all_words()) &&
               std::ranges::equal(a.paths.all_offsets(), b.paths.all_offsets()) && a.trees.size() == b.trees.size();
   for (std::size_t tile = 0; same && tile < a.trees.size(); ++tile)
     same = a.trees[tile].paths == b.trees[tile].paths && a.trees[tile].hits == b.trees[tile].hits &&
            a.trees[tile].first_hit == b.trees[tile].first_hit &&
            same_colors(a.sample_colors[tile], b.sample_colors[tile]);
-  return same && a.around_tiles == b.around_tiles && a.tunnels == b.tunnels;
+  return same && first.around_tiles == second.around_tiles && first.tunnels == second.tunnels;
 }
 
 /// A floor, a mirror box and a glass-like card under a light: every kind of path in few bytes.

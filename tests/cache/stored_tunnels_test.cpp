@@ -230,8 +230,8 @@ TEST_F(StoredTunnelsTest, OfACacheThatHasTakenThePlaceOfTheOneReadAreNotUsed) {
   SceneState other = test_scene(TestScene::study, 90, 70);
   apply_edit(other, edit_of_text(kMove), "moved", ".");
   write(other, {1, 5}, {});
-  const auto tunnels = StoredTunnels::of_cache(cache_, content.manifest, content.paths);
-  for (std::size_t tile = 0; tile < content.trees.size(); ++tile) {
+  const auto tunnels = StoredTunnels::of_cache(cache_, content.manifest, content.image.paths);
+  for (std::size_t tile = 0; tile < content.image.trees.size(); ++tile) {
     EXPECT_FALSE(tunnels->around(tile).has_value());
     EXPECT_FALSE(tunnels->read(tile).has_value());
   }
@@ -242,8 +242,8 @@ TEST_F(StoredTunnelsTest, OfMoreSectionsThanTheTreesCanHaveAreRefusedBeforeTheyA
   const SceneState state = test_scene(TestScene::study, 90, 70);
   CacheContent content = content_with_tunnels(state, {1, 5}, {});
   TunnelSection section = content.around_tiles[0].front();
-  for (History history = 1U << 20; history < (1U << 20) + 2000000; ++history) {
-    section.history = history;
+  for (std::uint32_t number = 1U << 20; number < (1U << 20) + 2000000; ++number) {
+    section.history = History::of_number(number);
     content.around_tiles[0].push_back(section);
   }
   write_cache(cache_, content);

@@ -37,20 +37,20 @@ FramePair pattern() {
   return pair;
 }
 
-/// Linear planes of a whole frame, clamped to [0, 1], its last rows and columns repeated as far as the filters see.
-RgbPlanes clamped_planes(const Frame& frame) {
+/// Linear grids of a whole frame, clamped to [0, 1], its last rows and columns repeated as far as the filters see.
+RgbGrids clamped_grids(const Frame& frame) {
   const std::size_t width = frame.width + 2 * kFlipRadius, height = frame.height + 2 * kFlipRadius;
-  RgbPlanes planes{Plane(width, height), Plane(width, height), Plane(width, height)};
+  RgbGrids grids{Grid(width, height), Grid(width, height), Grid(width, height)};
   for (std::size_t y = 0; y < height; ++y)
     for (std::size_t x = 0; x < width; ++x) {
       const std::size_t column = std::clamp<std::size_t>(x, kFlipRadius, frame.width + kFlipRadius - 1) - kFlipRadius;
       const std::size_t row = std::clamp<std::size_t>(y, kFlipRadius, frame.height + kFlipRadius - 1) - kFlipRadius;
       const Rgba& pixel = frame.pixels[row * frame.width + column];
-      planes.r.values[y * width + x] = std::clamp(pixel.r, 0.0F, 1.0F);
-      planes.g.values[y * width + x] = std::clamp(pixel.g, 0.0F, 1.0F);
-      planes.b.values[y * width + x] = std::clamp(pixel.b, 0.0F, 1.0F);
+      grids.r.values[y * width + x] = std::clamp(pixel.r, 0.0F, 1.0F);
+      grids.g.values[y * width + x] = std::clamp(pixel.g, 0.0F, 1.0F);
+      grids.b.values[y * width + x] = std::clamp(pixel.b, 0.0F, 1.0F);
     }
-  return planes;
+  return grids;
 }
 
 // Expected values: the formulas of NVIDIA's numpy implementation (github.com/NVlabs/flip, python/flip_api.py) in
@@ -77,7 +77,7 @@ TEST(Flip, hdr_errors_are_those_of_the_published_implementation) {
 
 TEST(Flip, ldr_errors_are_those_of_the_published_implementation) {
   const FramePair pair = pattern();
-  const std::vector<float> errors = ldr_flip(clamped_planes(pair.a), clamped_planes(pair.b), flip_filters());
+  const std::vector<float> errors = ldr_flip(clamped_grids(pair.a), clamped_grids(pair.b), flip_filters());
   ASSERT_EQ(errors.size(), pair.a.pixels.size());
   double sum = 0;
   for (const float error : errors) sum += double{error};

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/scene.h"
 #include "scene/surface_optics.h"
 

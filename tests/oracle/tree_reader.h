@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/scene.h"
 
 namespace relook {

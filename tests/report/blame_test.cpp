@@ -156,7 +156,7 @@ TEST_F(BlameProgram, names_steps_and_objects_of_a_pixel) {
 TEST_F(BlameProgram, a_cache_whose_frame_is_not_its_scenes_is_damage_and_no_abort) {
   CacheContent content;
   ASSERT_EQ(read_cache(at("cache"), content).fault, CacheFault::none);
-  content.frame[5 * kWidth + 7].g += 0.25F;
+  content.image.frame.pixels[5 * kWidth + 7].g += 0.25F;
   write_cache(at("other"), content);
   ASSERT_EQ(relook({"replay", at("other"), at("j.json"), "-o", at("run2"), "--quiet"}).exit_code, 0);
   EXPECT_EQ(relook({"blame", at("run2"), "6,5"}).exit_code, 0);

@@ -8,7 +8,7 @@
 
 #include "base/json.h"
 #include "edit/journal.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "report/report_entries.h"
 
 namespace relook {

@@ -10,7 +10,7 @@
 
 #include "base/json.h"
 #include "edit/journal.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "scene/compile/state.h"
 #include "scene/texture/image.h"
 

@@ -12,6 +12,7 @@
 #include "replay/replay.h"
 #include "test_scenes.h"
 #include "trace/tree/grow.h"
+#include "trace/tree/shadow_segment.h"
 #include "tree_reader.h"
 
 namespace relook {
@@ -182,9 +183,8 @@ struct OracleCounts {
   std::set<std::vector<std::uint32_t>> entries;
 };
 
-void compare_links(const RayScene& rays, const TreeBlock& block, const std::vector<WorldTriangle>& triangles,
+void compare_links(const Scene& scene, const TreeBlock& block, const std::vector<WorldTriangle>& triangles,
                    std::uint32_t bits, OracleCounts& counts) {
-  const Scene& scene = rays.scene();
   std::vector<BruteCrossing> crossings;
   for (const RayNode& node : block.nodes) {
     for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light) {
@@ -224,13 +224,13 @@ TEST(ShadowCounter, stored_counters_are_those_of_a_loop_over_all_objects) {
     const PrimaryRays primaries(state.scene().camera, view);
     const TileRect rect = tile_rect(0, image.frame.width, image.frame.height);
     OracleCounts counts;
-    for (std::uint32_t sample = 0; sample < sample_count(rect, view); ++sample) {
+    for (std::uint32_t sample = 0; sample < sample_count(rect, view.samples); ++sample) {
       const StoredTree stored{PathCursor(image.paths.words(image.trees[0].paths[sample]), grow.layout()),
                               image.trees[0].hits_of(sample)};
       GrowCounters counters;
       TreeBlock block;
       expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
-      compare_links(rays, block, triangles, bits, counts);
+      compare_links(state.scene(), block, triangles, bits, counts);
       if (HasFatalFailure()) return;
     }
     EXPECT_LT(counts.unclear, counts.compared / 10);
@@ -305,7 +305,7 @@ std::vector<ShadowSegment> shadow_segments(const Replayer& replayer) {
   const PrimaryRays primaries(scene.camera, image.view);
   const TileRect rect = tile_rect(0, image.frame.width, image.frame.height);
   std::vector<ShadowSegment> segments;
-  for (std::uint32_t sample = 0; sample < sample_count(rect, image.view); ++sample) {
+  for (std::uint32_t sample = 0; sample < sample_count(rect, image.view.samples); ++sample) {
     const StoredTree stored{PathCursor(image.paths.words(image.trees[0].paths[sample]), grow.layout()),
                             image.trees[0].hits_of(sample)};
     GrowCounters counters;

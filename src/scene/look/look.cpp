@@ -2,8 +2,8 @@
 // what relook does not support is left out.
 #include "scene/look/look.h"
 
-#include "base/import_memory.h"
 #include "scene/gltf/check/gltf_use.h"
+#include "scene/look/counted_assets.h"
 #include "scene/look/look_check.h"
 #include "scene/look/look_names.h"
 #include "scene/look/look_schema.h"

@@ -18,18 +18,14 @@ struct Hit {
   bool operator==(const Hit&) const = default;
 };
 
-/// Side of the square image tiles, in pixels: the unit of work, of storage and of EXR tiles.
-inline constexpr std::uint32_t kTileSize = 64;
-
 /// A place among the hits of a tile as it is kept. Throws std::bad_alloc where they are more than it can tell.
 [[nodiscard]] inline std::uint32_t hit_place(std::size_t hits) {
   if (hits > 0xFFFFFFFFU) throw std::bad_alloc();
   return static_cast<std::uint32_t>(hits);
 }
 
-/// The ray trees of one tile. Samples are numbered pixel by pixel (row by row inside the tile, the tile clipped to the
-/// image), all samples of a pixel together. Hits of a sample: nodes in preorder, each followed by the filters of its
-/// lights, as in the path.
+/// The ray trees of one tile, whose samples are numbered as base/tiles.h says. Hits of a sample: nodes in preorder, each
+/// followed by the filters of its lights, as in the path.
 struct TileTrees {
   std::vector<PathId> paths;             // [samples]
   std::vector<std::uint32_t> first_hit;  // [samples + 1] into hits; empty, as hits: not kept

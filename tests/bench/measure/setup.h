@@ -4,7 +4,7 @@
 #include <string>
 
 #include "edit/journal.h"
-#include "image/image.h"
+#include "frame/image.h"
 #include "record.h"
 #include "replay/replay.h"
 #include "scene/compile/state.h"

@@ -16,7 +16,7 @@
 namespace relook {
 
 /// Those of one tile.
-struct CompressedTile {
+struct TileColorTrees {
   std::vector<CompressedBlock> blocks;
   std::vector<std::uint32_t> samples;  // of the tile, increasing: the roots of all blocks, one after the other
   Leaves leaves;                       // with any of the samples
@@ -26,8 +26,8 @@ struct CompressedTile {
 };
 
 /// Those of one set of parameters.
-struct CompressedImage {
-  CompressedImage(ParameterSet of, std::size_t tile_count, std::size_t place)
+struct ColorTreeSet {
+  ColorTreeSet(ParameterSet of, std::size_t tile_count, std::size_t place)
       : number(place), parameters(std::move(of)), tiles(tile_count) {}
   /// Is no tile to be built?
   [[nodiscard]] bool is_valid() const;
@@ -35,15 +35,15 @@ struct CompressedImage {
   std::size_t number;  // of the sets so far
   ParameterSet parameters;
   SplitTable splits;
-  std::vector<CompressedTile> tiles;
+  std::vector<TileColorTrees> tiles;
   std::shared_ptr<std::vector<std::uint8_t>> were_built;  // by tile: were trees for these parameters kept before?
   std::uint64_t last_change = 0, uses = 0;
 };
 
-class CompressedEdits {
+class ColorTreeStore {
  public:
   /// `most_samples`: whose trees may be kept over all sets of parameters, m_c in the paper (4.1).
-  CompressedEdits(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
+  ColorTreeStore(std::size_t tiles, std::uint64_t most_samples) : tile_count_(tiles), most_samples_(most_samples) {}
 
   [[nodiscard]] std::uint64_t most_samples() const { return most_samples_; }
   /// Only trees of these sets are kept from now on.
@@ -51,7 +51,7 @@ class CompressedEdits {
   /// The set whose trees an edit of `changed` is to use; null: none, it goes through the ray trees.
   [[nodiscard]] const ParameterSet* set_for(const ParameterSet& changed) const;
   /// What is kept for the parameters, perhaps nothing yet. Valid until trim(). `change`: the number of changes so far.
-  [[nodiscard]] CompressedImage& of(const ParameterSet& parameters, std::uint64_t change);
+  [[nodiscard]] ColorTreeSet& of(const ParameterSet& parameters, std::uint64_t change);
 
   /// To be called with every change before its step's own trees are used.
   void note_colors(const ColorChange& change);
@@ -59,8 +59,8 @@ class CompressedEdits {
   void note_trees(std::size_t tile);
   void clear();
   /// Puts what has been built in its place. Tiles may be put at the same time.
-  void keep(CompressedTile& place, CompressedTile tile);
-  void drop(CompressedTile& place) { keep(place, {}); }
+  void keep(TileColorTrees& place, TileColorTrees tile);
+  void drop(TileColorTrees& place) { keep(place, {}); }
 
   /// After a step: drops what has the least information weight (paper 4.3: time to rebuild over size and over the
   /// number of changes since it was used) until no more samples than allowed are left. Returns the number of colour
@@ -76,20 +76,20 @@ class CompressedEdits {
 
  private:
   [[nodiscard]] std::shared_ptr<std::vector<std::uint8_t>> tiles_built(const ParameterSet& parameters);
-  void erase(const std::function<bool(const CompressedImage&)>& condition);
+  void erase(const std::function<bool(const ColorTreeSet&)>& condition);
 
   std::size_t tile_count_;
   std::uint64_t most_samples_, change_ = 0;
-  std::size_t sets_ = 0;  // so far
+  std::size_t set_count_ = 0;  // so far
   std::atomic<std::uint64_t> bytes_ = 0;
-  std::vector<std::shared_ptr<CompressedImage>> images_;
+  std::vector<std::shared_ptr<ColorTreeSet>> sets_;
   struct Built {
     ParameterSet parameters;
     std::shared_ptr<std::vector<std::uint8_t>> tiles;
   };
   std::vector<Built> built_;                         // sets so far, the last begun last; see kMostRemembered
   std::optional<std::vector<ParameterSet>> chosen_;  // none: any set may be kept
-  const CompressedImage* at_work_ = nullptr;
+  const ColorTreeSet* at_work_ = nullptr;
 };
 
 }  // namespace relook
