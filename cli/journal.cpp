@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "edit/apply.h"
-#include "edit/draft_diff.h"
+#include "edit/draft/draft_diff.h"
 #include "input/load_scene.h"
 #include "options/outputs.h"
 #include "scene/gltf/animation.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compare/frame_comparison.h"
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 #include "frame/image.h"
 #include "report/report.h"
 #include "scene/gltf/import_rules.h"

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/json.h"
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 #include "frame/frame_file.h"
 #include "frame/preview.h"
 #include "report/line_reader.h"

@@ -2,7 +2,7 @@
 #include <cstring>
 #include <random>
 
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
 #include "image/render.h"

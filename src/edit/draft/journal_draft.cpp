@@ -1,4 +1,4 @@
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 
 #include <charconv>
 

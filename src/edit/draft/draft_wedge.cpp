@@ -1,6 +1,6 @@
 // Values of one parameter as wedge steps.
 #include "base/error.h"
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 
 namespace relook {
 namespace {

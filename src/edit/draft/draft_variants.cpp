@@ -1,6 +1,6 @@
 // KHR_materials_variants as steps: switching a variant replaces materials of primitives.
 #include "base/error.h"
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 
 namespace relook {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 #include "edit/patch.h"
 #include "scene/look/look_names.h"
 #include "scene/look/look_schema.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "edit/journal_draft.h"
+#include "edit/draft/journal_draft.h"
 
 namespace relook {
 

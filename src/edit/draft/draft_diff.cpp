@@ -1,4 +1,4 @@
-#include "edit/draft_diff.h"
+#include "edit/draft/draft_diff.h"
 
 #include <algorithm>
 
