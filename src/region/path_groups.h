@@ -9,6 +9,7 @@
 
 #include "base/id.h"
 #include "region/quadtree.h"
+#include "trace/tree/ray_tree.h"
 
 namespace relook {
 
