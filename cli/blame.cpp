@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <span>
 
-#include "edit/journal.h"
+#include "edit/journal_walk.h"
 #include "image/cached_image.h"
 #include "input/load_cache.h"
 #include "options/outputs.h"
@@ -22,7 +22,7 @@ namespace {
 struct RunSource {
   std::string scene_hash;
   Journal journal;
-  std::size_t steps = 0;  // of the journal that the run has done
+  std::uint32_t steps = 0;  // of the journal that the run has done
   std::string cache;
 };
 
@@ -57,7 +57,7 @@ RunSource read_run(const Arguments& arguments) {
   const JsonView steps = view.at("steps");
   steps.require_array();
   if (steps.size() > 0)
-    source.steps = static_cast<std::size_t>(
+    source.steps = static_cast<std::uint32_t>(
         steps.at(steps.size() - 1).at("step").integer(0, static_cast<std::int64_t>(source.journal.steps.size())));
   return source;
 }
@@ -98,25 +98,20 @@ class Blame {
     print_paths(paths_, console_);
   }
 
-  void run(const Journal& journal, std::size_t steps) {
-    for (std::size_t i = 0; i < steps; ++i) {
-      const JournalStep& step = journal.steps[i];
-      std::size_t number = 0;
-      for (const Edit& edit : frames_of(step)) {
-        console_.check_interrupt();
-        const FramePlace place = place_of(step, static_cast<std::uint32_t>(i + 1), number++);
-        const PixelStep result = pixel_.step(edit, journal.file, journal.path.parent_path());
-        if (result.is_changed) note(place, step, result);
-      }
-    }
+  void run(const Journal& journal, std::uint32_t steps) {
+    follow_edits(JournalWalk(journal, 1, steps), [&](const JournalEvent& event) {
+      console_.check_interrupt();
+      const PixelStep result = pixel_.step(event.edit(), journal.file, journal.path.parent_path());
+      if (result.is_changed) note(event.place, event.step->name, result);
+    });
   }
   [[nodiscard]] Json found() { return std::move(found_); }
 
  private:
-  void note(const FramePlace& place, const JournalStep& step, const PixelStep& result) {
+  void note(const FramePlace& place, const std::string& name, const PixelStep& result) {
     const std::string change(change_class_name(result.classification.change));
-    console_.line(step_label(place) + " " + change + " \"" + printable(step.name) + "\": " + text(result.before) +
-                  " -> " + text(result.after));
+    console_.line(step_label(place) + " " + change + " \"" + printable(name) + "\": " + text(result.before) + " -> " +
+                  text(result.after));
     Json causes = Json::array();
     for (const std::string& cause : result.causes) {
       causes.push_back(printable(cause));
@@ -125,7 +120,7 @@ class Blame {
     if (pixel_.paths() != paths_) print_paths(pixel_.paths(), console_);
     paths_ = pixel_.paths();
     Json entry{{"step", place.step},
-               {"name", step.name},
+               {"name", name},
                {"class", change},
                {"frame", frame_name(place)},
                {"before", color_json(result.before)},

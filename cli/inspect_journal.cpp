@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "edit/apply.h"
-#include "edit/journal.h"
+#include "edit/journal_walk.h"
 #include "input/load_cache.h"
 #include "input/load_scene.h"
 #include "options/outputs.h"
@@ -34,7 +34,7 @@ Classification classify_edit(SceneState& state, const Edit& edit, const Journal&
   return classify(state.scene(), delta);
 }
 
-Json step_json(const JournalStep& step, std::size_t number) {
+Json step_json(const JournalStep& step, std::uint32_t number) {
   Json selected = Json::array();
   for (const std::string& pointer : step.select) selected.push_back(pointer);
   return {{"step", number},
@@ -94,6 +94,30 @@ class JsonOutput {
   bool is_wanted_, is_empty_ = true;
 };
 
+void list_steps(const Journal& journal, JsonOutput& output, Console& console) {
+  for (std::uint32_t number = 1; number <= journal.steps.size(); ++number) {
+    const Json entry = step_json(journal.steps[number - 1], number);
+    print_step(entry, std::to_string(number), console);
+    output.add(entry);
+  }
+}
+
+/// Each with its class.
+void list_frames(const Journal& journal, SceneState& state, JsonOutput& output, Console& console) {
+  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+    console.check_interrupt();
+    Json entry = step_json(*event.step, event.place.step);
+    std::string label = std::to_string(event.place.step);
+    if (event.place.number) {
+      entry[event.step->form() == StepForm::drag ? "drag_frame" : "wedge_frame"] = *event.place.number;
+      label += "." + std::to_string(*event.place.number);
+    }
+    add_classification(entry, classify_edit(state, event.edit(), journal));
+    print_step(entry, label, console);
+    output.add(entry);
+  });
+}
+
 }  // namespace
 
 void inspect_journal(const Arguments& arguments, Console& console) {
@@ -105,27 +129,10 @@ void inspect_journal(const Arguments& arguments, Console& console) {
     console.warn(check_journal(*state, journal));
   }
   JsonOutput output(journal, arguments.json, console);
-  for (std::size_t i = 0; i < journal.steps.size(); ++i) {
-    const JournalStep& step = journal.steps[i];
-    const std::string label = std::to_string(i + 1);
-    Json entry = step_json(step, i + 1);
-    const bool has_frames = !step.drag.empty() || !step.wedge.empty();
-    if (state && !has_frames) add_classification(entry, classify_edit(*state, step.edit, journal));
-    if (!state || !has_frames) {
-      print_step(entry, label, console);
-      output.add(entry);
-      continue;
-    }
-    const StepFrames frames = frames_of(step);
-    for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-      console.check_interrupt();
-      Json frame_entry = entry;
-      frame_entry[step.drag.empty() ? "wedge_frame" : "drag_frame"] = frame + 1;
-      add_classification(frame_entry, classify_edit(*state, frames[frame], journal));
-      print_step(frame_entry, label + "." + std::to_string(frame + 1), console);
-      output.add(frame_entry);
-    }
-  }
+  if (state)
+    list_frames(journal, *state, output, console);
+  else
+    list_steps(journal, output, console);
   output.end();
 }
 

@@ -121,8 +121,7 @@ ExitCode run_journal(const Arguments& arguments, Console& console) {
     throw InputError(arguments.inputs[0], "", "the animation moves nothing that the scene shows");
   write_file(arguments.output, text);
   brought.keep();
-  std::size_t frames = 0;
-  for (const JournalStep& step : journal.steps) frames += frames_of(step).size();
+  const std::size_t frames = frame_count(journal);
   console.line(arguments.output + ": " + std::to_string(journal.steps.size()) + " steps, " + std::to_string(frames) +
                " frames");
   Json warnings = Json::array();

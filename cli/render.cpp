@@ -5,6 +5,7 @@
 
 #include "base/hash.h"
 #include "edit/apply.h"
+#include "edit/journal_walk.h"
 #include "frame/frame_layers.h"
 #include "frame/preview.h"
 #include "image/layered_frame.h"
@@ -25,20 +26,16 @@ void apply_journal(SceneState& state, const Journal& journal, const std::optiona
   if (last && *last > journal.steps.size())
     throw UsageError("--step: " + std::to_string(*last) + " is beyond the " + std::to_string(journal.steps.size()) +
                      " steps of " + journal.file);
-  const std::size_t count = last ? *last : journal.steps.size();
+  const std::uint32_t count = last ? *last : static_cast<std::uint32_t>(journal.steps.size());
   console.warn(check_journal(state, journal));
   ChangeClass change = ChangeClass::base;
-  for (std::size_t i = 0; i < count; ++i) {
-    const StepFrames frames = frames_of(journal.steps[i]);
-    for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-      if (i + 1 == count && frame + 1 == frames.size()) before_last();
-      const SceneDelta delta = apply_edit(state, frames[frame], journal.file, journal.path.parent_path());
-      change = classify(state.scene(), delta).change;
-    }
-  }
-  const auto step = static_cast<std::uint32_t>(count);
-  meta.edits_hash = EditHashes(journal).after(step);
-  meta.step = step_label(count == 0 ? FramePlace() : last_place_of(journal.steps[count - 1], step));
+  follow_edits(JournalWalk(journal, 1, count), [&](const JournalEvent& event) {
+    const bool is_last = event.place.step == count && event.frame + 1 == event.step->frames();
+    if (is_last) before_last();
+    change = classify(state.scene(), apply_edit(state, event.edit(), journal.file, journal.path.parent_path())).change;
+  });
+  meta.edits_hash = EditHashes(journal).after(count);
+  meta.step = step_label(last_place_of(journal, count));
   meta.change_class = change_class_name(change);
 }
 

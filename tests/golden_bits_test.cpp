@@ -12,6 +12,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "cache/arithmetic.h"
+#include "edit/journal_walk.h"
 #include "replay/replay.h"
 #include "run_program.h"
 #include "scene/camera.h"
@@ -63,17 +64,24 @@ void take_bits(const std::string& name, SceneState state, ViewOptions view, cons
   note(image, "preprocess");
   Replayer replayer(std::move(state), std::move(image));
   const std::filesystem::path folder = journal.path.parent_path();
-  for (const JournalStep& step : journal.steps) {
-    for (const Edit& edit : frames_of(step)) {
-      if (step.drag.empty())
-        replayer.step(edit, journal.file, folder);
-      else
-        replayer.drag(edit, journal.file, folder);
-      note(replayer.image(), step.name);
+  for (const JournalEvent& event : JournalWalk(journal)) {
+    switch (event.kind) {
+      case EventKind::edit:
+        replayer.step(event.edit(), journal.file, folder);
+        note(replayer.image(), event.step->name);
+        break;
+      case EventKind::drag:
+        replayer.drag(event.edit(), journal.file, folder);
+        note(replayer.image(), event.step->name);
+        break;
+      case EventKind::release:
+        replayer.release();
+        note(replayer.image(), event.step->name + ", released");
+        break;
+      case EventKind::base:
+      case EventKind::wedge_end:
+        break;
     }
-    if (step.drag.empty()) continue;
-    replayer.release();
-    note(replayer.image(), step.name + ", released");
   }
 }
 

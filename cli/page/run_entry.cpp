@@ -166,10 +166,9 @@ Json details_of(const Json& entry, const Journal& journal, const Json& kinds) {
   if (place == 0 || place > journal.steps.size()) return std::move(details.json());
   const JournalStep& step = journal.steps[place - 1];
   details.add("select", step.select.size(), [&](std::size_t i) { return cut_text(step.select[i], kLongestText); });
-  const StepFrames frames = frames_of(step);
   const std::size_t frame = frame_in_step(entry);
-  if (frame > 0 && frame <= frames.size())
-    details.add_edit(frames[frame - 1]);
+  if (frame > 0 && frame <= step.frames())
+    details.add_edit(step.edit_of(frame - 1));
   else if (frame == 0)
     details.add_edit(step.edit);  // none for the step of a drag or a wedge
   return std::move(details.json());

@@ -12,17 +12,13 @@
 #include "input/load_cache.h"
 #include "replay/memory_needs.h"
 #include "report/places.h"
+#include "run/step_text.h"
 
 namespace relook {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// "3_01" of a frame, "3" of a drag or wedge as a whole.
-std::string label_of(const StepReport& entry) {
-  return entry.is_whole_step ? std::to_string(entry.place.step) : step_label(entry.place);
 }
 
 /// What the entry of a frame that another command has made says of the frame itself.
@@ -46,35 +42,6 @@ RegionOptions region_options(const StructureOptions& structures) {
           .atoms = structures.atoms,
           .tunnel_levels = structures.tunnel_levels,
           .most_tunnels = structures.most_tunnels};
-}
-
-/// The step and, one after the other, the phases that its report times.
-void trace_step(const StepReport& step, std::chrono::steady_clock::time_point start, TraceFile& trace) {
-  const Seconds& seconds = step.seconds;
-  const Counters& counters = step.counters;
-  trace.span(label_of(step) + " " + step.name, start, seconds.total,
-             {{"class", change_class_name(step.change)},
-              {"pixels_changed", counters.pixels_changed},
-              {"samples_affected", counters.samples_affected},
-              {"ray_tests", counters.ray_tests},
-              {"ray_updates", counters.ray_updates},
-              {"shadow_updates", counters.shadow_updates}});
-  for (const auto& [name, duration] : {std::pair{"classify", seconds.classify},
-                                       {"select", seconds.select},
-                                       {"test", seconds.test},
-                                       {"update", seconds.update},
-                                       {"evaluate", seconds.evaluate},
-                                       {"write", seconds.write}}) {
-    if (duration > 0) trace.span(name, start, duration);
-    start += std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(duration));
-  }
-  const Resident& resident = step.resident;
-  trace.amounts("resident bytes", {{"ray_paths", resident.ray_paths},
-                                   {"ray_trees", resident.ray_trees},
-                                   {"sample_colors", resident.sample_colors},
-                                   {"color_trees", resident.color_trees},
-                                   {"groups", resident.groups},
-                                   {"tunnels", resident.tunnels}});
 }
 
 }  // namespace
@@ -144,54 +111,54 @@ void JournalRun::leave_off() {
 }
 
 void JournalRun::run_steps() {
-  for (std::uint32_t step = 1; step < plan_.first_step(); ++step)
-    for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame, ++frame_number_)
-      pending_.add(edit_of(step, frame));
-  if (plan_.first_step() > 0) ++frame_number_;
   if (arguments_.baseline && !arguments_.verify_percent) full_render();
-  for (std::uint32_t step = plan_.first_step(); step <= plan_.last_step(); ++step) run_step(step);
+  for (const JournalEvent& event : JournalWalk(journal_, 0, plan_.last_step())) {
+    const bool is_asked_for = event.place.step >= plan_.first_step();
+    switch (event.kind) {
+      case EventKind::base:
+      case EventKind::edit:
+      case EventKind::drag:
+        if (is_asked_for)
+          run_frame(event);
+        else if (event.kind != EventKind::base)
+          pending_.add(event.edit());
+        ++frame_number_;
+        break;
+      case EventKind::release:
+      case EventKind::wedge_end:
+        if (is_asked_for && (step_so_far_ || !plan_.keeps_whole_step(event.place.step))) end_step(event);
+        break;
+    }
+  }
   console_.part_done();
 }
 
-/// Requires: not of step 0, which is the frame before any edit.
-Edit JournalRun::edit_of(std::uint32_t step, std::size_t frame) const {
-  return frames_of(journal_.steps[step - 1])[frame];
+void JournalRun::run_frame(const JournalEvent& event) {
+  if (plan_.keeps(event.place.step, event.frame))
+    pass_kept(event);
+  else
+    make_frame(event);
+  ++frames_done_;
 }
 
-void JournalRun::run_step(std::uint32_t step) {
-  for (std::size_t frame = 0; frame < plan_.frames_in(step); ++frame, ++frames_done_, ++frame_number_) {
-    if (plan_.keeps(step, frame))
-      pass_kept(step, frame);
-    else
-      run_frame(step, frame);
-  }
-  if (step_so_far_ || (step > 0 && new_entry(step, 0).place.number && !plan_.keeps_whole_step(step)))
-    end_numbered(step);
-}
-
-StepReport JournalRun::new_entry(std::uint32_t step, std::size_t frame) const {
+StepReport JournalRun::new_entry(const JournalEvent& event) const {
   StepReport entry;
-  entry.edits_hash = plan_.hashes().at(step, frame);
+  entry.place = event.place;
+  entry.is_drag = event.step != nullptr && event.step->form() == StepForm::drag;
+  entry.name = step_name(journal_, event.place.step);
+  entry.edits_hash = plan_.hashes().at(event.place.step, event.frame);
   entry.source_hash = plan_.source_hash();
   entry.verify_percent = arguments_.verify_percent;
   entry.exposure = report_.exposure;
-  if (step == 0) {
-    entry.name = "base";
-    return entry;
-  }
-  const JournalStep& written = journal_.steps[step - 1];
-  entry.place = place_of(written, step, frame);
-  entry.is_drag = !written.drag.empty();
-  entry.name = written.name;
   return entry;
 }
 
 /// A frame that is there already: its edit is made with the next ones, or at once while a selection is being dragged.
-void JournalRun::pass_kept(std::uint32_t step, std::size_t frame) {
-  const StepReport entry = new_entry(step, frame);
+void JournalRun::pass_kept(const JournalEvent& event) {
+  const StepReport entry = new_entry(event);
   console_.log_line(label_of(entry) + " \"" + printable(entry.name) + "\": kept");
-  if (step == 0) return;
-  Edit edit = edit_of(step, frame);
+  if (event.kind == EventKind::base) return;
+  Edit edit = event.edit();
   follows_last_ = false;
   if (is_dragging_)
     (void)replayer_.drag(edit, journal_.file, journal_.path.parent_path());
@@ -212,23 +179,32 @@ void JournalRun::catch_up() {
   report_.resume_seconds += seconds_since(start);
 }
 
-StepResult JournalRun::edited(const StepReport& entry, std::size_t frame) {
-  StepResult result;
-  if (entry.place.step == 0) {
-    const Frame& base = replayer_.image().frame;
-    result.counters.samples_total = std::uint64_t{base.width} * base.height * report_.view.samples;
-    result.counters.rebuilt = rebuilt_;
-    result.classification.change = ChangeClass::base;
-    return result;
-  }
-  const Edit edit = edit_of(entry.place.step, frame);
+/// Does what leads to a frame, or to the end of a step.
+StepResult JournalRun::follow(const JournalEvent& event) {
   const std::filesystem::path folder = journal_.path.parent_path();
-  is_dragging_ = entry.is_drag;
-  return entry.is_drag ? replayer_.drag(edit, journal_.file, folder) : replayer_.step(edit, journal_.file, folder);
+  switch (event.kind) {
+    case EventKind::base:
+      break;
+    case EventKind::edit:
+      return replayer_.step(event.edit(), journal_.file, folder);
+    case EventKind::drag:
+      is_dragging_ = true;
+      return replayer_.drag(event.edit(), journal_.file, folder);
+    case EventKind::release:
+      return std::exchange(is_dragging_, false) ? replayer_.release() : StepResult();
+    case EventKind::wedge_end:
+      return {};
+  }
+  StepResult result;
+  const Frame& base = replayer_.image().frame;
+  result.counters.samples_total = std::uint64_t{base.width} * base.height * report_.view.samples;
+  result.counters.rebuilt = rebuilt_;
+  result.classification.change = ChangeClass::base;
+  return result;
 }
 
-void JournalRun::run_frame(std::uint32_t step, std::size_t frame) {
-  StepReport entry = new_entry(step, frame);
+void JournalRun::make_frame(const JournalEvent& event) {
+  StepReport entry = new_entry(event);
   console_.check_interrupt();
   show_part(entry);
   StepResult result;
@@ -236,7 +212,7 @@ void JournalRun::run_frame(std::uint32_t step, std::size_t frame) {
   try {
     catch_up();
     start = std::chrono::steady_clock::now();
-    result = edited(entry, frame);
+    result = follow(event);
   } catch (const ResourceError&) {  // with more memory the run goes on from here
     leave_off();
     throw;
@@ -253,25 +229,21 @@ void JournalRun::run_frame(std::uint32_t step, std::size_t frame) {
 
 /// The entry of a drag or wedge as a whole, which names the last of its frames; a dragged selection goes back into the
 /// ray trees.
-void JournalRun::end_numbered(std::uint32_t step) {
+void JournalRun::end_step(const JournalEvent& event) {
   const auto start = std::chrono::steady_clock::now();
-  const std::size_t last = plan_.frames_in(step) - 1;
+  const std::uint32_t step = event.place.step;
+  const std::size_t last = event.frame;
   const bool is_last_kept = plan_.keeps(step, last);
-  StepReport entry = step_so_far_ && !is_last_kept ? *step_so_far_ : new_entry(step, last);
+  StepReport entry = step_so_far_ && !is_last_kept ? *step_so_far_ : new_entry(event);
   step_so_far_.reset();
   if (is_last_kept) take_over(plan_.kept_entry(step, last), entry);
   entry.is_whole_step = true;
-  entry.counters = Counters();
-  entry.seconds = Seconds();
+  const StepResult result = follow(event);
+  entry.counters = result.counters;
+  entry.seconds = result.seconds;
+  if (entry.is_drag) entry.counters.samples_total = plan_.samples();  // also where all frames were there
   entry.reasons = {entry.is_drag ? "the selection is released where the last entry put it"
                                  : "the last value of the wedge stays"};
-  if (entry.is_drag) entry.counters.samples_total = plan_.samples();  // also where all frames were there
-  if (is_dragging_) {
-    const StepResult result = replayer_.release();
-    is_dragging_ = false;
-    entry.counters = result.counters;
-    entry.seconds = result.seconds;
-  }
   // The class is that of all its frames, those of earlier commands included.
   entry.change = ChangeClass::color;
   for (std::size_t frame = 0; frame <= last; ++frame) {
@@ -322,7 +294,7 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   entry.peak_rss_bytes = peak_rss_bytes();
   if (arguments_.verify_percent) verify(entry);
   trace_step(entry, start, console_.trace());
-  print(entry);
+  console_.log_line(line_of(entry));
   if (is_numbered) {
     step_class_ = combined(step_class_, entry.change);
     step_so_far_ = entry;
@@ -354,18 +326,6 @@ void JournalRun::verify(StepReport& entry) {
   entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
   pixels_compared_ += difference.pixels_compared;
   pixels_different_ += difference.pixels_different;
-}
-
-void JournalRun::print(const StepReport& entry) {
-  const Counters& counters = entry.counters;
-  std::string line = label_of(entry) + " " + std::string(change_class_name(entry.change)) + " \"" +
-                     printable(entry.name) + "\": " + std::to_string(counters.pixels_changed) + " pixels changed, " +
-                     std::to_string(counters.ray_updates) + " ray updates, " + std::to_string(counters.shadow_updates) +
-                     " shadow updates, " + std::to_string(entry.seconds.total) + " s";
-  if (entry.verify)
-    line += ", verified: " + std::to_string(entry.verify->pixels_different) + " of " +
-            std::to_string(entry.verify->pixels_compared) + " pixels differ";
-  console_.log_line(line);
 }
 
 /// Of the first frames; print_summary() counts all.

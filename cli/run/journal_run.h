@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "color/expression/parameter_set.h"
-#include "edit/journal.h"
+#include "edit/journal_walk.h"
 #include "image/cached_image.h"
 #include "options/arguments.h"
 #include "replay/replay.h"
@@ -52,18 +52,16 @@ class JournalRun {
   void make_room_for_page();
   void leave_off();
   void catch_up();
-  void run_step(std::uint32_t step);
-  [[nodiscard]] StepResult edited(const StepReport& entry, std::size_t frame);
-  void run_frame(std::uint32_t step, std::size_t frame);
-  void pass_kept(std::uint32_t step, std::size_t frame);
-  void end_numbered(std::uint32_t step);
-  [[nodiscard]] StepReport new_entry(std::uint32_t step, std::size_t frame) const;
-  [[nodiscard]] Edit edit_of(std::uint32_t step, std::size_t frame) const;
+  void run_frame(const JournalEvent& event);
+  void pass_kept(const JournalEvent& event);
+  void make_frame(const JournalEvent& event);
+  [[nodiscard]] StepResult follow(const JournalEvent& event);
+  void end_step(const JournalEvent& event);
+  [[nodiscard]] StepReport new_entry(const JournalEvent& event) const;
   void show_part(const StepReport& entry);
   void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
   void verify(StepReport& entry);
   Frame full_render();
-  void print(const StepReport& entry);
   void print_summary();
   void note_tunnel_damage();
   void warn_of_clipping(const StepReport& entry);

@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "edit/journal_walk.h"
 #include "image/layered_frame.h"
 #include "image/overlay.h"
 #include "page/run_page.h"
@@ -192,7 +193,7 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   const auto missing_in = [&](std::uint32_t first, std::uint32_t last) {
     std::size_t missing = 0;
     for (std::uint32_t step = first; step <= std::min<std::size_t>(last, journal_.steps.size()); ++step)
-      missing += plan_.frames_in(step) - frames_there[step];
+      missing += frames_in(journal_, step) - frames_there[step];
     return missing;
   };
   // Asked for by others, too: what is missing there is missing, unless somebody is at it.
@@ -216,7 +217,7 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   for (const auto& [key, note] : notes) {
     Json entry = ledger.entry(note);
     entry["resumed"] = entry.at("command") != command_;
-    entry["name"] = key.first > 0 ? journal_.steps[key.first - 1].name : "base";
+    entry["name"] = step_name(journal_, key.first);
     report_file_->add(entry);
   }
   report_file_->publish();

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cache/cache.h"
+#include "edit/journal_walk.h"
 #include "report/run_source.h"
 #include "run/run_files.h"
 
@@ -76,11 +77,9 @@ void RunPlan::judge_run() {
 std::optional<std::string> RunPlan::expected_edits(const LedgerKey& key) const {
   const auto& [step, number] = key;
   if (step > journal_.steps.size()) return std::nullopt;
-  if (step == 0) return number == kWholeStep ? std::optional(hashes_.at(0, 0)) : std::nullopt;
-  const JournalStep& entry = journal_.steps[step - 1];
   if (number == kWholeStep) return hashes_.after(step);
-  const bool is_numbered = !entry.drag.empty() || !entry.wedge.empty();
-  return is_numbered && number <= frames_of(entry).size() ? std::optional(hashes_.at(step, number - 1)) : std::nullopt;
+  const bool has_it = is_numbered(journal_, step) && number <= frames_in(journal_, step);
+  return has_it ? std::optional(hashes_.at(step, number - 1)) : std::nullopt;
 }
 
 std::optional<std::string> RunPlan::other_journal() const {
@@ -138,7 +137,7 @@ KnownFrame RunPlan::known_frame(const LedgerKey& key) const {
   known.preview = preview_name(place_of_key(key));
   known.source = source_hash_;
   known.is_numbered = number != kWholeStep;
-  known.is_drag = step > 0 && step <= journal_.steps.size() && !journal_.steps[step - 1].drag.empty();
+  known.is_drag = step > 0 && step <= journal_.steps.size() && journal_.steps[step - 1].form() == StepForm::drag;
   known.is_base = step == 0;
   known.is_whole_step = !is_frame(key);
   known.pixels = pixels_;
@@ -174,7 +173,7 @@ void RunPlan::find_kept() {
   unsound_frames_ = 0;
   kept_.clear();
   keeps_whole_.clear();
-  for (std::uint32_t step = first_; step <= last_; ++step) kept_.emplace_back(frames_in(step), false);
+  for (std::uint32_t step = first_; step <= last_; ++step) kept_.emplace_back(frames_in(journal_, step), false);
   keeps_whole_.assign(kept_.size(), false);
   pixels_different_ = 0;
   if (ledger_ && !replaces_all_) judge_notes();
@@ -222,11 +221,12 @@ void RunPlan::judge_notes() {
 /// one of these is missing, it is made anew in any case.
 bool RunPlan::sums_up(std::uint32_t step, const Json& whole) const {
   ChangeClass change = ChangeClass::color;
-  for (std::size_t frame = 0; frame < frames_in(step); ++frame) {
+  const std::size_t frames = frames_in(journal_, step);
+  for (std::size_t frame = 0; frame < frames; ++frame) {
     if (!keeps(step, frame)) return false;
     const Json entry = kept_entry(step, frame);
     change = combined(change, change_class_of(entry.at("class").get_ref<const std::string&>()));
-    const bool is_last = frame + 1 == frames_in(step);
+    const bool is_last = frame + 1 == frames;
     for (const char* key : {"files", "verify", "verify_percent", "overlays", "exposure"})
       if (is_last && whole.at(key) != entry.at(key)) return false;
   }
@@ -242,16 +242,17 @@ void RunPlan::count_kept() {
     return note != nullptr && note->is_in_report;
   };
   for (std::uint32_t step = first_; step <= last_; ++step) {
-    const std::size_t count = frames_in(step);
+    const std::size_t count = frames_in(journal_, step);
     frames_ += count;
     const LedgerKey whole{step, kWholeStep};
-    if (!is_frame(whole)) has_all_in_report = has_all_in_report && keeps_whole_[step - first_] && is_reported(whole);
+    if (is_numbered(journal_, step))
+      has_all_in_report = has_all_in_report && keeps_whole_[step - first_] && is_reported(whole);
     for (std::size_t frame = 0; frame < count; ++frame) {
       if (keeps(step, frame)) {
         ++kept_frames_;
         has_all_in_report = has_all_in_report && is_reported(key_of(step, frame));
       } else if (!replaces_all_) {
-        require_free_names(place(step, frame));
+        require_free_names(place_of(journal_, step, frame));
       }
     }
   }
@@ -298,16 +299,8 @@ std::vector<std::string> RunPlan::warnings() const {
           " again"};
 }
 
-std::size_t RunPlan::frames_in(std::uint32_t step) const {
-  return step == 0 ? 1 : frames_of(journal_.steps[step - 1]).size();
-}
-
 LedgerKey RunPlan::key_of(std::uint32_t step, std::size_t frame) const {
-  return {step, place(step, frame).number.value_or(kWholeStep)};
-}
-
-FramePlace RunPlan::place(std::uint32_t step, std::size_t frame) const {
-  return step == 0 ? FramePlace() : place_of(journal_.steps[step - 1], step, frame);
+  return {step, place_of(journal_, step, frame).number.value_or(kWholeStep)};
 }
 
 bool RunPlan::is_of_journal(const LedgerKey& key, const RunLedger::Note& note) const {
@@ -317,8 +310,7 @@ bool RunPlan::is_of_journal(const LedgerKey& key, const RunLedger::Note& note) c
 
 bool RunPlan::is_frame(const LedgerKey& key) const {
   const auto& [step, number] = key;
-  return number != kWholeStep || step == 0 || step > journal_.steps.size() ||
-         (journal_.steps[step - 1].drag.empty() && journal_.steps[step - 1].wedge.empty());
+  return number != kWholeStep || step > journal_.steps.size() || !is_numbered(journal_, step);
 }
 
 Json RunPlan::kept_entry(std::uint32_t step, std::size_t frame) const {
@@ -358,7 +350,7 @@ bool RunPlan::has_other_names() const {
   constexpr std::size_t kThreeDigits = 100;
   return std::ranges::any_of(ledger_->notes(), [&](const auto& entry) {
     const auto& [key, note] = entry;
-    const bool may_have = !is_frame({key.first, kWholeStep}) && frames_in(key.first) >= kThreeDigits;
+    const bool may_have = !is_frame({key.first, kWholeStep}) && frames_in(journal_, key.first) >= kThreeDigits;
     return may_have && is_of_journal(key, note) && ledger_->entry(note).at("frame") != frame_name_of(key);
   });
 }
@@ -376,8 +368,7 @@ std::vector<Json> RunPlan::entries_to_stay() const {
 
 FramePlace RunPlan::place_of_key(const LedgerKey& key) const {
   const auto& [step, number] = key;
-  if (number != kWholeStep) return place(step, number - 1);
-  return step == 0 ? FramePlace() : last_place_of(journal_.steps[step - 1], step);
+  return number == kWholeStep ? last_place_of(journal_, step) : place_of(journal_, step, number - 1);
 }
 
 std::string RunPlan::frame_name_of(const LedgerKey& key) const { return frame_name(place_of_key(key)); }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "edit/frame_place.h"
 #include "edit/journal.h"
 #include "options/arguments.h"
 #include "report/edit_hashes.h"
@@ -63,7 +64,6 @@ class RunPlan {
   /// What a killed command has left of report.html; in turn for the page.
   void remove_unfinished_page() const;
 
-  [[nodiscard]] std::size_t frames_in(std::uint32_t step) const;
   /// Of a drag or wedge as a whole: of its last frame. Requires: an entry of this journal.
   [[nodiscard]] std::string frame_name_of(const LedgerKey& key) const;
   [[nodiscard]] LedgerKey key_of(std::uint32_t step, std::size_t frame) const;
@@ -72,7 +72,6 @@ class RunPlan {
   [[nodiscard]] bool is_frame(const LedgerKey& key) const;
 
  private:
-  [[nodiscard]] FramePlace place(std::uint32_t step, std::size_t frame) const;
   void refresh();
   void look_into_folder();
   void judge_run();

@@ -10,7 +10,7 @@ namespace relook {
 
 class BlockShading {
  public:
-  explicit BlockShading(const RayScene& scene) : scene_(scene) {}
+  explicit BlockShading(const ColorScene& scene) : scene_(scene) {}
 
   /// Each fills its part of colors(). `programs`: of this scene.
   void shade_filters(const TreeBlock& block, NodePrograms& programs);
@@ -23,7 +23,7 @@ class BlockShading {
   [[nodiscard]] ColorMemory& memory() { return memory_; }
 
  private:
-  const RayScene& scene_;
+  const ColorScene& scene_;
   ColorMemory memory_;
   Batches batches_;
   std::vector<std::uint32_t> batch_of_, chosen_;

@@ -5,7 +5,7 @@
 
 namespace relook {
 
-NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside) {
+NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside) {
   const RayObject& object = scene.object(id);
   NodeKey key;
   key.kind = NodeKind::surface;
@@ -16,7 +16,7 @@ NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside) {
   return key;
 }
 
-NodeKey filter_key(const RayScene& scene, ObjectId id) {
+NodeKey filter_key(const ColorScene& scene, ObjectId id) {
   NodeKey key = surface_key(scene, id, false);
   key.kind = NodeKind::filter;
   return key;
@@ -27,19 +27,18 @@ void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState st
     key.lights.push_back({light, order, state == ShadowState::filtered});
 }
 
-NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node) {
+NodeKey key_of(const ColorScene& scene, const TreeBlock& block, const RayNode& node) {
   if (node.object.is_none()) return {};
   NodeKey key = surface_key(scene, node.object, node.point.inside);
-  for (std::size_t b = 0; b < kBranches; ++b)
-    if (node.child[b] != kNoNode) key.children = static_cast<std::uint8_t>(key.children | 1U << b);
-  const auto& order = scene.scene().light_order;
+  key.children = children_of(node);
+  const auto& order = scene.light_order();
   for (std::uint32_t light = 0; light < order.size(); ++light)
     note_light(key, order[light], light, block.lights[node.first_light + light].state);
   return key;
 }
 
 std::uint32_t NodePrograms::number(const TreeBlock& block, const RayNode& node) {
-  const std::vector<LightId>& order = scene_.scene().light_order;
+  const std::vector<LightId>& order = scene_.light_order();
   if (order.size() <= kMostTellingLights)
     return number(signature_of(block, node, order.size()),
                   [&] { return restricted(key_of(scene_, block, node), part_); });
@@ -51,12 +50,12 @@ std::uint32_t NodePrograms::number(const TreeBlock& block, const RayNode& node) 
     });
   Signature signature = signature_of(block, node, 0);
   if (!node.object.is_none() && lamp_place_ < order.size())
-    signature.lights = light_bits(block.lights[node.first_light + lamp_place_].state);
+    signature.add_light(0, block.lights[node.first_light + lamp_place_].state);
   return number(signature, [&] { return restricted(key_of(scene_, block, node), part_); });
 }
 
 std::size_t NodePrograms::place_of_lamp() const {
-  const std::vector<LightId>& order = scene_.scene().light_order;
+  const std::vector<LightId>& order = scene_.light_order();
   return static_cast<std::size_t>(std::ranges::find(order, part_.lamp) - order.begin());
 }
 
@@ -86,7 +85,7 @@ void ProgramTable::clear() {
   programs_.clear();
 }
 
-void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
+void append_keys(const ColorScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
                  std::uint32_t shadow_bits, std::vector<NodeKey>& keys) {
   for (PathCursor cursor(path, {lights.size(), shadow_bits}); !cursor.at_end();) {
     const PathNode node = cursor.next();
@@ -94,7 +93,7 @@ void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std
       keys.emplace_back();
       continue;
     }
-    NodeKey key = surface_key(scene, node.object(), node.inside());
+    NodeKey key = surface_key(scene, node.object, node.inside());
     key.children = node.branches();
     EntryReader entries(node.entries, shadow_bits);
     for (std::uint32_t light = 0; light < lights.size(); ++light) {

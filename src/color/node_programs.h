@@ -10,33 +10,56 @@
 
 namespace relook {
 
-[[nodiscard]] NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside);
+[[nodiscard]] NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside);
 /// The side is left open: it depends on the hit, not on the path.
-[[nodiscard]] NodeKey filter_key(const RayScene& scene, ObjectId id);
+[[nodiscard]] NodeKey filter_key(const ColorScene& scene, ObjectId id);
 void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state);
-[[nodiscard]] NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node);
+[[nodiscard]] NodeKey key_of(const ColorScene& scene, const TreeBlock& block, const RayNode& node);
 
-/// A short form of NodeKey that is cheap to make and compare: (material, flags), light states.
-struct Signature {
-  std::uint64_t surface = 0, lights = 0;
-  bool operator==(const Signature&) const = default;
+/// What of a surface, beside its material, its programs differ by.
+struct SurfaceForm {
+  bool inside = false, vertex_colors = false, interface_only = false;
 };
-struct SignatureHash {
-  std::size_t operator()(const Signature& s) const {
-    return (s.surface * 0x9E3779B97F4A7C15ULL) ^ (s.lights * 0xC2B2AE3D27D4EB4FULL);
+
+/// A short form of NodeKey that is cheap to make and compare. One of its own for the environment.
+class Signature {
+ public:
+  constexpr Signature() = default;  // the environment
+  constexpr Signature(NodeKind kind, MaterialId material, const SurfaceForm& form, BranchSet children)
+      : surface_(std::uint64_t{material.index()} << kMaterialShift | std::uint64_t{children.bits()} << kChildrenShift |
+                 kIsSurface | (form.inside ? kInside : 0U) | (form.vertex_colors ? kVertexColors : 0U) |
+                 (form.interface_only ? kInterfaceOnly : 0U) | (kind == NodeKind::filter ? kIsFilter : 0U)) {}
+  /// Only how a light reaches the node counts. `place`: each once, below kMostTellingLights.
+  constexpr void add_light(std::size_t place, ShadowState state) {
+    const std::uint64_t bits = state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
+    lights_ |= bits << (2 * place);
   }
+  [[nodiscard]] constexpr std::size_t hash() const {
+    return (surface_ * 0x9E3779B97F4A7C15ULL) ^ (lights_ * 0xC2B2AE3D27D4EB4FULL);
+  }
+  friend constexpr bool operator==(const Signature&, const Signature&) = default;
+
+ private:
+  static constexpr unsigned kChildrenShift = 8, kMaterialShift = 16;
+  static constexpr std::uint64_t kInside = 1, kVertexColors = 2, kInterfaceOnly = 4, kIsSurface = 8,
+                                 kIsFilter = std::uint64_t{1} << 63;
+  std::uint64_t surface_ = 0;
+  std::uint64_t lights_ = 0;  // two bits a light
+};
+static_assert(sizeof(Signature) == 16 && kMostTellingLights <= 32);
+struct SignatureHash {
+  std::size_t operator()(const Signature& signature) const { return signature.hash(); }
 };
 
 /// Gives nodes dense program numbers within one block. Nodes, not filters, are restricted to a part of their colours.
 class NodePrograms {
  public:
-  NodePrograms(const RayScene& scene, ProgramTable& table, const ColorPart& part = {})
+  NodePrograms(const ColorScene& scene, ProgramTable& table, const ColorPart& part = {})
       : scene_(scene), table_(table), part_(part), lamp_place_(place_of_lamp()) {}
 
   std::uint32_t number(const TreeBlock& block, const RayNode& node);
   std::uint32_t number(const TreeBlock&, const FilterNode& filter) {
-    Signature signature{surface_bits(filter.object, filter.point.inside, 0) | kFilterBit, 0};
-    return number(signature, [&] {
+    return number(signature_of(NodeKind::filter, filter.object, filter.point.inside, {}), [&] {
       NodeKey key = filter_key(scene_, filter.object);
       key.inside = filter.point.inside;
       return key;
@@ -46,26 +69,17 @@ class NodePrograms {
   [[nodiscard]] std::size_t size() const { return programs_.size(); }
 
  private:
-  static_assert(kMostTellingLights <= 32, "a signature has two bits a light");
-  static constexpr std::uint64_t kFilterBit = std::uint64_t{1} << 63;
-
-  [[nodiscard]] std::uint64_t surface_bits(ObjectId id, bool inside, std::uint64_t children) const {
+  [[nodiscard]] Signature signature_of(NodeKind kind, ObjectId id, bool inside, BranchSet children) const {
     const RayObject& object = scene_.object(id);
-    return std::uint64_t{scene_.scene().object(id).material.index()} << 16 | children << 8 | (inside ? 1U : 0U) |
-           (object.mesh->colors.empty() ? 0U : 2U) | (object.optics.volume && inside ? 4U : 0U) | 8U;
-  }
-  [[nodiscard]] static std::uint64_t light_bits(ShadowState state) {  // only how a light reaches the node counts
-    return state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
+    const SurfaceForm form{inside, !object.mesh->colors.empty(), object.optics.volume && inside};
+    return {kind, scene_.scene().object(id).material, form, children};
   }
   /// `lights`: how many count, from the first.
   [[nodiscard]] Signature signature_of(const TreeBlock& block, const RayNode& node, std::size_t lights) const {
     if (node.object.is_none()) return {};
-    std::uint64_t children = 0;
-    for (std::size_t b = 0; b < kBranches; ++b) children |= std::uint64_t{node.child[b] != kNoNode} << b;
-    Signature signature{surface_bits(node.object, node.point.inside, children), 0};
+    Signature signature = signature_of(NodeKind::surface, node.object, node.point.inside, children_of(node));
     const LightLink* links = block.lights.data() + node.first_light;
-    for (std::size_t light = 0; light < lights; ++light)
-      signature.lights |= light_bits(links[light].state) << (2 * light);
+    for (std::size_t light = 0; light < lights; ++light) signature.add_light(light, links[light].state);
     return signature;
   }
   [[nodiscard]] std::size_t place_of_lamp() const;
@@ -80,7 +94,7 @@ class NodePrograms {
     return last_number_;
   }
 
-  const RayScene& scene_;
+  const ColorScene& scene_;
   ProgramTable& table_;
   ColorPart part_;
   std::size_t lamp_place_;  // of the part's only lamp in the light order

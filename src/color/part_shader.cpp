@@ -9,10 +9,10 @@ namespace relook {
 namespace {
 
 /// Can a part that is restricted everywhere be other than zero? Only lamps are looked for.
-bool may_reach(const LayerPart& layer, const Scene& scene, const TreeBlock& block) {
+bool may_reach(const LayerPart& layer, const RayScene& scene, const TreeBlock& block) {
   const ColorPart& part = layer.part;
   if (part.all_lamps || part.lamp.is_none() || part.sources != 0) return true;
-  const auto& order = scene.light_order;
+  const auto& order = scene.light_order();
   const auto place = static_cast<std::size_t>(std::ranges::find(order, part.lamp) - order.begin());
   return std::ranges::any_of(block.nodes, [&](const RayNode& node) {
     if (node.object.is_none()) return false;
@@ -24,13 +24,13 @@ bool may_reach(const LayerPart& layer, const Scene& scene, const TreeBlock& bloc
 }  // namespace
 
 struct PartShader::Impl {
-  const RayScene& scene;
+  const ColorScene& scene;
   NodePrograms whole;
   BlockShading shading;
   std::span<const LayerPart> parts;
   std::deque<NodePrograms> programs;  // by part
 
-  Impl(const RayScene& s, ProgramTable& table, std::span<const LayerPart> all)
+  Impl(const ColorScene& s, ProgramTable& table, std::span<const LayerPart> all)
       : scene(s), whole(s, table), shading(s), parts(all) {
     for (const LayerPart& layer : parts) programs.emplace_back(s, table, layer.part);
   }
@@ -41,7 +41,7 @@ struct PartShader::Impl {
   }
 };
 
-PartShader::PartShader(const RayScene& scene, ProgramTable& programs, std::span<const LayerPart> parts)
+PartShader::PartShader(const ColorScene& scene, ProgramTable& programs, std::span<const LayerPart> parts)
     : impl_(std::make_unique<Impl>(scene, programs, parts)) {}
 PartShader::~PartShader() = default;
 
@@ -58,7 +58,7 @@ void PartShader::shade(const TreeBlock& block, std::span<const std::uint32_t> ro
   }
   for (std::size_t p = 0; p < s.parts.size(); ++p) {
     if (s.parts[p].at_first_hit) continue;
-    if (may_reach(s.parts[p], s.scene.scene(), block)) {
+    if (may_reach(s.parts[p], s.scene, block)) {
       s.shading.shade_nodes(block, s.programs[p]);
       s.take(roots, out[p]);
     } else {

@@ -18,7 +18,7 @@ struct LayerPart {
 /// Evaluates parts of blocks of ray trees. One per thread; as a Shader.
 class PartShader {
  public:
-  PartShader(const RayScene& scene, ProgramTable& programs, std::span<const LayerPart> parts);
+  PartShader(const ColorScene& scene, ProgramTable& programs, std::span<const LayerPart> parts);
   ~PartShader();
   /// out[p][k] is part p of the sample whose tree is rooted at roots[k].
   void shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::vector<std::vector<Rgba>>& out);

@@ -6,14 +6,14 @@
 namespace relook {
 
 struct Shader::Impl {
-  const RayScene& scene;
+  const ColorScene& scene;
   NodePrograms programs;
   BlockShading shading;
 
-  Impl(const RayScene& s, ProgramTable& table) : scene(s), programs(s, table), shading(s) {}
+  Impl(const ColorScene& s, ProgramTable& table) : scene(s), programs(s, table), shading(s) {}
 };
 
-Shader::Shader(const RayScene& scene, ProgramTable& programs) : impl_(std::make_unique<Impl>(scene, programs)) {}
+Shader::Shader(const ColorScene& scene, ProgramTable& programs) : impl_(std::make_unique<Impl>(scene, programs)) {}
 Shader::~Shader() = default;
 
 void Shader::shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::span<Rgba> out) {

@@ -37,7 +37,7 @@ class ProgramTable {
 class Shader {
  public:
   /// The scene and the table's programs must not change while the shader lives.
-  Shader(const RayScene& scene, ProgramTable& programs);
+  Shader(const ColorScene& scene, ProgramTable& programs);
   ~Shader();
   /// Colours of the samples in `block`: out[k] is that of the tree rooted at node roots[k].
   void shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::span<Rgba> out);
@@ -53,7 +53,7 @@ class Shader {
 
 /// The keys of all nodes and filters of a path, appended: with them the colours that an edit can change are found from
 /// paths alone. `lights`: the light order in which the path was recorded, with `shadow_bits`.
-void append_keys(const RayScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
+void append_keys(const ColorScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
                  std::uint32_t shadow_bits, std::vector<NodeKey>& keys);
 
 }  // namespace relook

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "edit/apply.h"
+#include "edit/effect.h"
 #include "edit/material_changes.h"
-#include "scene/surface_optics.h"
 
 namespace relook {
 namespace {
@@ -33,17 +33,22 @@ std::vector<MeshId> meshes_with(const Scene& scene, MaterialId material) {
   return meshes;
 }
 
+/// On a mesh.
+ChangeClass class_of(const Material& before, const Material& after, const Mesh& mesh) {
+  return class_of(effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh)));
+}
+
 /// The strongest class over all meshes that show the material. Optics depend on a mesh through its smallest alpha
 /// alone, and steadily: if both extremes agree there is no need to look for the meshes.
 ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
   const Material& after = scene.material(change.id);
   Mesh solid, clear;
   clear.min_alpha = 0;
-  const ChangeClass found = material_change_class(change.before, after, solid);
-  if (found == material_change_class(change.before, after, clear)) return found;
+  const ChangeClass found = class_of(change.before, after, solid);
+  if (found == class_of(change.before, after, clear)) return found;
   ChangeClass strongest = ChangeClass::color;
   for (MeshId mesh : meshes_with(scene, change.id))
-    strongest = std::max(strongest, material_change_class(change.before, after, scene.mesh(mesh)));
+    strongest = std::max(strongest, class_of(change.before, after, scene.mesh(mesh)));
   return strongest;
 }
 
@@ -74,24 +79,27 @@ std::string describe_deformation(const Object& before, const Object& after) {
   return old.joints == now.joints ? "morph weights changed" : "its joints are transformed";
 }
 
+/// Of an object that is moved in the sense of ObjectEffect.
+std::string describe_move(const Object& before, const Object& after) {
+  if (before.alive != after.alive) return after.alive ? " appears" : " disappears";
+  if (before.mesh != after.mesh) return ": another mesh";
+  if (before.deformation != after.deformation) return ": " + describe_deformation(before, after);
+  if (before.displacement == after.displacement) return " is transformed";
+  return !before.displacement  ? ": displacement map added"
+         : !after.displacement ? ": displacement map removed"
+                               : ": displacement map changed";
+}
+
 void classify_object(const Scene& scene, const SceneDelta& delta, const SceneDelta::ObjectChange& change,
                      Findings& findings) {
   const Object& before = change.before;
   const Object& after = scene.object(change.id);
   const std::string name = object_name(after);
-  if (before.alive != after.alive)
-    return findings.add(ChangeClass::geometric, name + (after.alive ? " appears" : " disappears"));
-  if (before.mesh != after.mesh) return findings.add(ChangeClass::geometric, name + ": another mesh");
-  if (before.deformation != after.deformation)
-    return findings.add(ChangeClass::geometric, name + ": " + describe_deformation(before, after));
-  if (before.displacement != after.displacement)
-    return findings.add(ChangeClass::geometric, name + (!before.displacement  ? ": displacement map added"
-                                                        : !after.displacement ? ": displacement map removed"
-                                                                              : ": displacement map changed"));
-  if (before.to_world != after.to_world) return findings.add(ChangeClass::geometric, name + " is transformed");
+  const ObjectEffect effect = effect_of(before, after);
+  if (effect.moved) return findings.add(class_of(effect), name + describe_move(before, after));
   const Material& old_material = material_before(scene, delta, before.material);
   const Material& new_material = scene.material(after.material);
-  findings.add(material_change_class(old_material, new_material, scene.mesh(after.mesh)),
+  findings.add(class_of(old_material, new_material, scene.mesh(after.mesh)),
                name + ": material " + name_of(old_material) + " -> " + name_of(new_material));
 }
 
@@ -99,14 +107,13 @@ void classify_light(const Scene& scene, const SceneDelta::LightChange& change, F
   const Light& before = change.before;
   const Light& after = scene.light(change.id);
   const std::string name = "light " + (after.light.empty() ? before.light : after.light) + " (node " + after.node + ")";
-  if (before.alive != after.alive)
-    findings.add(ChangeClass::geometric, name + (after.alive ? " appears" : " disappears"));
-  else if (before.kind != after.kind)
-    findings.add(ChangeClass::geometric, name + ": another type");
-  else if (before.position != after.position || before.direction != after.direction)
-    findings.add(ChangeClass::geometric, name + " is transformed");
-  else
-    findings.add(ChangeClass::color, name + ": " + describe_light_change(before, after));
+  const LightEffect effect = effect_of(before, after);
+  const auto sentence = [&]() -> std::string {
+    if (effect.exists_otherwise) return after.alive ? " appears" : " disappears";
+    if (before.kind != after.kind) return ": another type";
+    return effect.moved ? " is transformed" : ": " + describe_light_change(before, after);
+  };
+  findings.add(class_of(effect), name + sentence());
 }
 
 }  // namespace

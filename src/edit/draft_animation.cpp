@@ -19,7 +19,7 @@ constexpr double kMostAnimatedValues = 300'000;  // frames times channels: opera
 struct Track {
   const AnimationChannel* channel = nullptr;
   Tokens path;
-  const Field* field = nullptr;
+  const SchemaField* field = nullptr;
   Json last;  // what the property is after the frames so far; null: absent
   bool is_clamped = false;
 };

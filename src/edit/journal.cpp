@@ -187,6 +187,40 @@ Edit Wedge::operator[](std::size_t i) const {
   return edit;
 }
 
+StepForm JournalStep::form() const {
+  return !drag.empty() ? StepForm::drag : !wedge.empty() ? StepForm::wedge : StepForm::edit;
+}
+
+std::size_t JournalStep::frames() const {
+  switch (form()) {
+    case StepForm::drag:
+      return drag.size();
+    case StepForm::wedge:
+      return wedge.size();
+    case StepForm::edit:
+      break;
+  }
+  return 1;
+}
+
+Edit JournalStep::edit_of(std::size_t frame) const {
+  switch (form()) {
+    case StepForm::drag:
+      return drag[frame];
+    case StepForm::wedge:
+      return wedge[frame];
+    case StepForm::edit:
+      break;
+  }
+  return edit;
+}
+
+std::size_t frame_count(const Journal& journal) {
+  std::size_t frames = 0;
+  for (const JournalStep& step : journal.steps) frames += step.frames();
+  return frames;
+}
+
 Journal read_journal(const std::filesystem::path& path, const WhileWaiting& while_waiting) {
   const Bytes bytes = read_input(path, while_waiting);
   return parse_journal(text_of(bytes), input_name(path));

@@ -40,6 +40,9 @@ struct Wedge {
 /// The most frames a journal may have, of all its steps together.
 inline constexpr std::size_t kMostFrames = 1'000'000;
 
+/// What the frames of a step are made by: its one edit, the entries of a drag or the values of a wedge.
+enum class StepForm : std::uint8_t { edit, drag, wedge };
+
 struct JournalStep {
   std::string name;
   Edit edit;                        // empty for a drag and a wedge
@@ -47,36 +50,13 @@ struct JournalStep {
   std::vector<Edit> drag;           // one intermediate frame each; the last is committed
   Wedge wedge;
   std::string where;  // "/steps/3"
+
+  [[nodiscard]] StepForm form() const;
+  /// How many there are; of an edit one.
+  [[nodiscard]] std::size_t frames() const;
+  /// The edit that leads to a frame, from 0, from the one before; made when it is asked for.
+  [[nodiscard]] Edit edit_of(std::size_t frame) const;
 };
-
-/// The frames of a step, each an edit: those of a drag or a wedge, or the one of a plain edit. Refers to the step.
-class StepFrames {
- public:
-  class Iterator {
-   public:
-    Iterator(const StepFrames& frames, std::size_t at) : frames_(frames), at_(at) {}
-    [[nodiscard]] Edit operator*() const { return frames_[at_]; }
-    Iterator& operator++() { return ++at_, *this; }
-    [[nodiscard]] bool operator!=(const Iterator& other) const { return at_ != other.at_; }
-
-   private:
-    const StepFrames& frames_;
-    std::size_t at_;
-  };
-  explicit StepFrames(const JournalStep& step) : step_(&step) {}
-  [[nodiscard]] std::size_t size() const {
-    return !step_->drag.empty() ? step_->drag.size() : !step_->wedge.empty() ? step_->wedge.size() : 1;
-  }
-  [[nodiscard]] Edit operator[](std::size_t i) const {
-    return !step_->drag.empty() ? step_->drag[i] : !step_->wedge.empty() ? step_->wedge[i] : step_->edit;
-  }
-  [[nodiscard]] Iterator begin() const { return {*this, 0}; }
-  [[nodiscard]] Iterator end() const { return {*this, size()}; }
-
- private:
-  const JournalStep* step_;
-};
-[[nodiscard]] inline StepFrames frames_of(const JournalStep& step) { return StepFrames(step); }
 
 struct Journal {
   std::filesystem::path path;  // where it was read; assets and images it names lie below its folder
@@ -86,6 +66,9 @@ struct Journal {
   std::string hash;            // XXH3-128 of the bytes
   std::vector<JournalStep> steps;
 };
+
+/// Of all steps together, the one before any edit aside.
+[[nodiscard]] std::size_t frame_count(const Journal& journal);
 
 /// A file or, as "-", standard input. Throws InputError{file, pointer, ...} for the file as a whole, InputErrors that
 /// name the wrong steps; a journal of more than kMostFrames frames is not read beyond the step that is too much.

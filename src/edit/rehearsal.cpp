@@ -4,16 +4,17 @@
 #include <algorithm>
 
 #include "edit/apply.h"
+#include "edit/journal_walk.h"
 #include "edit/step_errors.h"
 #include "edit/transaction.h"
 
 namespace relook {
 namespace {
 
-bool is_guard(const StepFrames& frames) {
+bool is_guard(const JournalStep& step) {
   bool has_operations = false;
-  for (const Edit& edit : frames)
-    for (const PatchOperation& operation : edit) {
+  for (std::size_t frame = 0; frame < step.frames(); ++frame)
+    for (const PatchOperation& operation : step.edit_of(frame)) {
       if (operation.op != PatchOp::test) return false;
       has_operations = true;
     }
@@ -44,7 +45,7 @@ class Rehearsal {
 
   std::vector<std::string> run() {
     try {
-      for (const JournalStep& step : journal_.steps) try_step(step);
+      for (std::uint32_t step = 1; step <= journal_.steps.size(); ++step) try_step(step);
     } catch (...) {
       take_back_all();
       throw;
@@ -60,20 +61,19 @@ class Rehearsal {
   }
 
  private:
-  void try_step(const JournalStep& step) {
-    const StepFrames frames = frames_of(step);
+  void try_step(std::uint32_t number) {
     Transaction transaction(state_, journal_.file, journal_.path.parent_path());
     transaction.count_after(done_);
     bool changes_scene = false;
     try {
       const bool is_sound = errors_.is_sound([&] {
-        for (std::size_t entry = 0; entry < frames.size(); ++entry) {
-          if (!step.drag.empty()) check_drag_scope(state_, step, entry, journal_.file);
-          const SceneDelta delta = transaction.apply(frames[entry]);
+        follow_edits(JournalWalk(journal_, number, number), [&](const JournalEvent& event) {
+          if (event.kind == EventKind::drag) check_drag_scope(state_, *event.step, event.frame, journal_.file);
+          const SceneDelta delta = transaction.apply(event.edit());
           changes_scene = changes_scene || !delta.empty();
           if (notes_classes_ && !is_beyond_color_)
             is_beyond_color_ = classify(state_.scene(), delta).change != ChangeClass::color;
-        }
+        });
       });
       if (!is_sound) return transaction.undo();
     } catch (...) {
@@ -81,7 +81,8 @@ class Rehearsal {
       throw;
     }
     is_change_ = is_change_ || changes_scene;
-    if (!changes_scene && !is_guard(frames)) warn(step, transaction.has_changes());
+    const JournalStep& step = journal_.steps[number - 1];
+    if (!changes_scene && !is_guard(step)) warn(step, transaction.has_changes());
     done_.absorb(std::move(transaction));
   }
 

@@ -21,7 +21,7 @@ bool is_prefix(const Tokens& prefix, const Tokens& tokens) {
 }
 
 /// The field of the look document that the first `count` tokens lead to; null for entries and what no schema knows.
-const Field* field_of(const Tokens& path, std::size_t count) {
+const SchemaField* field_of(const Tokens& path, std::size_t count) {
   const std::optional<Section> section = section_of(path[0]);
   const std::size_t entry = section ? 2 : 1;
   if (count <= entry) return nullptr;
@@ -31,7 +31,7 @@ const Field* field_of(const Tokens& path, std::size_t count) {
 }
 
 bool has_required(const Schema& schema) {
-  return std::any_of(schema.fields.begin(), schema.fields.end(), [](const Field& field) { return field.required; });
+  return std::ranges::any_of(schema.fields, &SchemaField::required);
 }
 
 /// Who uses what an edit removed, from a pointer to the mention: node "Lamp" (/nodes/Lamp/...).
@@ -203,9 +203,9 @@ Json& Transaction::replaced_value(const Tokens& path, const PatchPlace& place) {
   const std::size_t depth = existing_depth(look, path);
   if (depth == path.size()) return value_at(look, path, place);
   Json* at = &value_at(look, Tokens(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(depth)), place);
-  const Field* missing = field_of(path, depth + 1);
+  const SchemaField* missing = field_of(path, depth + 1);
   if (!at->is_object() || missing == nullptr) return value_at(look, path, place);
-  const Field* field = field_of(path, path.size());
+  const SchemaField* field = field_of(path, path.size());
   bool is_creatable = field != nullptr && field->unwritten;
   for (std::size_t count = depth + 1; count < path.size() && is_creatable; ++count)
     is_creatable = !has_required(*field_of(path, count)->inner);

@@ -71,12 +71,12 @@ class LayerNames {
 
 ColorPart of_sources(std::uint8_t sources) { return {.sources = sources, .all_lamps = false}; }
 LayerPart of_aspect(Aspect aspect) {
-  return {{.aspect = aspect, .sources = 0, .branches = 0, .all_lamps = false}, true};
+  return {{.aspect = aspect, .sources = 0, .branches = {}, .all_lamps = false}, true};
 }
 ColorPart through(std::initializer_list<Branch> branches) {
-  ColorPart part{.sources = 0, .branches = 0, .all_lamps = false};
+  ColorPart part{.sources = 0, .branches = {}, .all_lamps = false};
   for (const Branch branch : branches)
-    part.branches = static_cast<std::uint8_t>(part.branches | 1U << static_cast<unsigned>(branch));
+    part.branches.add(branch);
   return part;
 }
 
@@ -97,13 +97,13 @@ NamedParts parts_by_light(const Scene& scene) {
 /// What the first hit does with the light.
 NamedParts parts_by_path() {
   return {
-      {"direct", {{.sources = kAmbientSource, .branches = 0}, true}},
+      {"direct", {{.sources = kAmbientSource, .branches = {}}, true}},
       {"reflected", {through({Branch::reflection, Branch::coat}), true}},
       {"refracted",
        {through({Branch::refraction, Branch::refracted_red, Branch::refracted_green, Branch::refracted_blue}), true}},
       {"transparent", {through({Branch::transparency}), true}},
-      {"emitted", {{.sources = kEmissionSource, .branches = 0, .all_lamps = false}, true}},
-      {"background", {{.sources = kEnvironmentSource, .branches = 0, .all_lamps = false}, true}}};
+      {"emitted", {{.sources = kEmissionSource, .branches = {}, .all_lamps = false}, true}},
+      {"background", {{.sources = kEnvironmentSource, .branches = {}, .all_lamps = false}, true}}};
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // What layers a frame with --aovs has, as a table that follows from the scene: names of channels, header attributes,
-// and the parts of the colour that make up each sum. README.md lists the layers.
+// and the parts of the colour that make up each sum. LAYERS.md lists them.
 //
 // A sum is a list of layers whose float32 values, added from first to last, are the frame's R, G and B in the file, bit
 // for bit. Its last layer, the rest, is there for that: what rounding leaves between the others and the frame.

@@ -31,7 +31,7 @@ std::vector<std::uint64_t> triangles_hit(const Scene& scene, std::span<const std
   for (PathCursor cursor(words, layout); !cursor.at_end();) {
     const PathNode node = cursor.next();
     if (node.is_miss()) continue;
-    triangles.push_back(triangle_count(scene, node.object_word));
+    triangles.push_back(triangle_count(scene, node.object.index()));
     EntryReader entries(node.entries, layout.shadow_bits);
     for (std::size_t light = 0; light < layout.lights; ++light) {
       const ShadowState state = shadow_state(node.lights, light);

@@ -1,4 +1,4 @@
-// What a step did and what it could skip; the names are those of report.json (DESIGN 1.7).
+// What a step did and what it could skip; the names are those of report.json (report/report.schema.json).
 #pragma once
 #include <cstdint>
 

@@ -31,7 +31,7 @@ LayerScene::LayerScene(const Scene& scene, const ViewOptions& options, const Fra
 
 LayerTile::LayerTile(const LayerScene& scene, ProgramTable& programs)
     : s_(scene),
-      primary_(scene.rays.scene().camera, scene.view),
+      primary_(scene.rays.camera(), scene.view),
       shader_(scene.rays, programs, scene.layers.parts),
       columns_(scene.layers.channels.size()) {}
 
@@ -92,7 +92,7 @@ void LayerTile::set_first_hit(std::uint32_t pixel, std::uint32_t first_sample) {
   }
   put(kDepthColumn, pixel, {kFarDepth});
   if (nearest == nullptr) return;
-  const Camera& camera = s_.rays.scene().camera;
+  const Camera& camera = s_.rays.camera();
   const Point& position = nearest->point.position;
   const Rgba normal = colors_[1][nearest_sample];
   const Uv uv = first_uv(*s_.rays.object(nearest->object).mesh, nearest->hit);

@@ -19,7 +19,7 @@ struct LayerScene {
 
   const ViewOptions& view;
   const FrameLayers& layers;
-  RayScene rays;
+  ColorScene rays;
   Tracer tracer{false};
   Tracer::TopLevel level;
   GrowScene grow;

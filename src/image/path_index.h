@@ -32,7 +32,7 @@ void for_each_object(std::span<const std::uint32_t> path, const PathLayout& layo
   for (PathCursor cursor(path, layout); !cursor.at_end();) {
     const PathNode node = cursor.next();
     if (node.is_miss()) continue;
-    visit(node.object());
+    visit(node.object);
     EntryReader entries(node.entries, layout.shadow_bits);
     for (std::size_t light = 0; light < layout.lights; ++light)
       for (std::uint32_t object : entries.next(shadow_state(node.lights, light)).objects) visit(ObjectId(object));

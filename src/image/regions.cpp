@@ -49,7 +49,7 @@ std::vector<std::size_t> ImageRegions::build_tunnels(const Image& image, const G
   if (cell_levels_.empty()) return {};
   if (has_tunnels()) offer(nullptr, 0);  // these have been used up
   add_pieces(image.trees.size());
-  lights_ = light_ends(grow.scene.scene());
+  lights_ = light_ends(grow.scene);
   mean_area_ = 0;
   std::vector<std::uint8_t> is_lost(tunnels_.size(), 0);
   parallel_for(tunnels_.size(), [&](std::size_t tile) {

@@ -13,6 +13,7 @@
 #include "image/sampling.h"
 #include "region/cell_tunnels.h"
 #include "trace/tree/grow.h"
+#include "trace/tree/pack.h"
 
 namespace relook {
 namespace {
@@ -34,11 +35,12 @@ struct TileRecord {
 class TileRenderer {
  public:
   /// `tunnels`: null, or which to build.
-  TileRenderer(const GrowScene& grow, const ViewOptions& view, ProgramTable& programs, const TunnelRecord* tunnels)
+  TileRenderer(const GrowScene& grow, const ColorScene& scene, const ViewOptions& view, ProgramTable& programs,
+               const TunnelRecord* tunnels)
       : grow_(grow),
         view_(view),
-        primary_(grow.scene.scene().camera, view),
-        shader_(grow.scene, programs),
+        primary_(grow.scene.camera(), view),
+        shader_(scene, programs),
         tunnels_(tunnels) {}
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
@@ -147,14 +149,14 @@ void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint
 void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t> tiles, bool keep, RenderStats& stats,
                   const Progress& progress, TunnelRecord* tunnels = nullptr, const MemoryMonitor& monitor = {}) {
   const auto start = Clock::now();
-  const RayScene ray_scene(scene);
+  const ColorScene color_scene(scene);
   const std::uint32_t shadow_bits = keep ? image.view.shadow_bits : 0;  // colours do not depend on counters
   Tracer tracer(shadow_bits > 0, monitor);
-  const Tracer::TopLevel level = tracer.build(ray_scene);
+  const Tracer::TopLevel level = tracer.build(color_scene);
   stats.build_seconds = seconds_since(start);
 
   const auto render_start = Clock::now();
-  const GrowScene grow{ray_scene, &level, image.view.max_depth, shadow_bits};
+  const GrowScene grow{color_scene, &level, image.view.max_depth, shadow_bits};
   ProgramTable programs;
   std::vector<GrowCounters> counters(tiles.size());
   std::vector<TileRecord> records(keep ? tiles.size() : 0);
@@ -168,7 +170,7 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
     const TileRect rect = tile_rect(tiles[i], image.frame.width, image.frame.height);
     std::vector<Rgba> colors;
     const auto renderer =
-        renderers.take([&] { return std::make_unique<TileRenderer>(grow, image.view, programs, tunnels); });
+        renderers.take([&] { return std::make_unique<TileRenderer>(grow, color_scene, image.view, programs, tunnels); });
     if (!levels.empty()) begin_tunnels(records[i], TileGrid(levels[tiles[i]]), *tunnels);
     renderer->render(rect, colors, keep ? &records[i] : nullptr, counters[i]);
     if (!levels.empty()) end_tunnels(records[i]);

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/system/memory.h"
 #include "image/sampling.h"
+#include "trace/tree/pack.h"
 
 namespace relook {
 namespace {
@@ -100,7 +101,7 @@ GrowCounters StoredImage::bring_back_hits(std::size_t tile, const Leaves& leaves
 void StoredImage::find_hits(std::size_t tile, const GrowScene& scene, GrowCounters& counters) {
   TileTrees& trees = image_.trees[tile];
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
-  const PrimaryRays primaries(scene.scene.scene().camera, image_.view);
+  const PrimaryRays primaries(scene.scene.camera(), image_.view);
   std::vector<Hit> hits;
   std::vector<std::uint32_t> first_hit{0}, words;
   TreeBlock block;
@@ -188,7 +189,7 @@ void StoredImage::keep_paths(std::span<const NewSamples> fresh, const GrowScene&
     classes_.clear();
     regions_.forget_stored();
   }
-  lights_ = scene.scene.scene().light_order;
+  lights_ = scene.scene.light_order();
   std::vector<std::vector<PathId>> ids(fresh.size());
   for (std::size_t k = 0; k < fresh.size(); ++k)
     for (std::uint32_t i = 0; i < fresh[k].packed.paths.size(); ++i)

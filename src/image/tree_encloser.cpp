@@ -12,7 +12,7 @@ TreeEncloser::TreeEncloser(const Image& image, const GrowScene& grow, std::size_
       grow_(grow),
       trees_(image.trees[tile]),
       rect_(tile_rect(tile, image.frame.width, image.frame.height)),
-      primaries_(grow.scene.scene().camera, image.view),
+      primaries_(grow.scene.camera(), image.view),
       class_of_(class_of),
       set_(most) {}
 

@@ -194,11 +194,11 @@ bool is_box(const Box& box) {
 }  // namespace
 
 std::string broken_tunnel(std::span<const TunnelSection> sections) {
-  if (sections.empty() || sections.front().history != kEye) return "a tunnel does not begin at the eye";
+  if (sections.empty() || !sections.front().history.is_eye()) return "a tunnel does not begin at the eye";
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const TunnelSection& section = sections[i];
     if (i > 0 && section.history <= sections[i - 1].history) return "the sections of a tunnel are not in order";
-    if (i > 0 && find_section(sections.first(i), parent_of(section.history)) == nullptr)
+    if (i > 0 && find_section(sections.first(i), section.history.parent()) == nullptr)
       return "a section of a tunnel begins nowhere";
     const bool is_sound = is_box(section.points) && is_box(section.leaving) && section.slack >= 0 &&
                           std::isfinite(section.slack) && (i > 0 || !section.points.isEmpty());

@@ -39,10 +39,10 @@ float reach(const Box& from, const Box& target) {
 
 /// Where the rays of a section start.
 Box origins_of(std::span<const TunnelSection> tunnel, const TunnelSection& section) {
-  const TunnelSection* const parent = find_section(tunnel, parent_of(section.history));
+  const TunnelSection* const parent = find_section(tunnel, section.history.parent());
   require(parent != nullptr, "a section's parent is in the tunnel");
   Box origins = parent->points;
-  if (is_folded(section.history)) origins.extendBy(section.points);
+  if (section.history.is_folded()) origins.extendBy(section.points);
   return origins;
 }
 
@@ -69,7 +69,7 @@ bool is_beyond(const Box& from, const Box& directions, const BoxSet& target, con
 
 bool is_ray_touched(std::span<const TunnelSection> tunnel, const TunnelSection& section, const TunnelTest& test) {
   const BoxSet& target = test.change.moved;
-  if (section.history == kEye || target.empty()) return false;
+  if (section.history.is_eye() || target.empty()) return false;
   const Box origins = origins_of(tunnel, section);
   if (!section.points.isEmpty() && is_between(origins, section.points, section.slack, target, test)) return true;
   return !section.leaving.isEmpty() && is_beyond(origins, section.leaving, target, test);
@@ -86,8 +86,8 @@ bool is_light_touched(const TunnelSection& section, const LightEnd& light, const
 void mark_ancestors(Touches& touches) {
   const std::size_t touched = touches.size();
   for (std::size_t i = 0; i < touched; ++i) {
-    for (History history = touches[i].history; history != kEye;) {
-      history = parent_of(history);
+    for (History history = touches[i].history; !history.is_eye();) {
+      history = history.parent();
       const auto it = std::ranges::find(touches, history, &Touch::history);
       if (it != touches.end()) {
         it->below = true;
@@ -98,7 +98,7 @@ void mark_ancestors(Touches& touches) {
       ancestor.below = true;
       touches.push_back(ancestor);
     }
-    if (is_folded(touches[i].history)) touches[i].below = true;
+    if (touches[i].history.is_folded()) touches[i].below = true;
   }
   std::ranges::sort(touches, {}, &Touch::history);
 }
@@ -107,14 +107,14 @@ void mark_ancestors(Touches& touches) {
 
 void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, std::uint32_t root,
              std::vector<History>& scratch) {
-  const std::size_t lights = scene.scene().light_order.size();
+  const std::size_t lights = scene.light_order().size();
   const std::uint32_t sample = block.nodes[root].sample;
   scratch.clear();
   for (std::uint32_t i = root; i < block.nodes.size() && block.nodes[i].sample == sample; ++i) {
     const RayNode& node = block.nodes[i];
     const bool is_primary = i == root;
-    scratch.push_back(is_primary ? kPrimary : child_of(scratch[node.parent - root], node.ray.branch));
-    if (is_primary) section_of(tunnel, kEye).points.extendBy(node.ray.origin);
+    scratch.push_back(is_primary ? History::primary() : scratch[node.parent - root].child(node.ray.branch));
+    if (is_primary) section_of(tunnel, History::eye()).points.extendBy(node.ray.origin);
     TunnelSection& section = section_of(tunnel, scratch.back());
     if (node.object.is_none()) {
       section.leaving.extendBy(node.ray.direction);
@@ -126,8 +126,8 @@ void enclose(Sections& tunnel, const RayScene& scene, const TreeBlock& block, st
     section.slack = std::max(section.slack, distance_slack(node, object));
     for (std::size_t light = 0; light < lights; ++light) {
       const ShadowState state = block.lights[node.first_light + light].state;
-      if (state == ShadowState::blocked) section.blocked |= light_bit(light);
-      if (state == ShadowState::open || state == ShadowState::filtered) section.open |= light_bit(light);
+      if (state == ShadowState::blocked) section.blocked.add(light);
+      if (state == ShadowState::open || state == ShadowState::filtered) section.open.add(light);
     }
   }
 }
@@ -175,13 +175,24 @@ void enclose(Sections& tunnel, std::span<const TunnelSection> other) {
   }
 }
 
+namespace {
+
+LightEnd end_of(const RayLight& light) {
+  const bool directional = light.kind == LightKind::directional;
+  return {directional, Box(directional ? -light.direction : light.position)};
+}
+
+}  // namespace
+
+std::vector<LightEnd> light_ends(const RayScene& scene) {
+  std::vector<LightEnd> ends;
+  for (std::size_t place = 0; place < scene.light_order().size(); ++place) ends.push_back(end_of(scene.light(place)));
+  return ends;
+}
+
 std::vector<LightEnd> light_ends(const Scene& scene) {
   std::vector<LightEnd> ends;
-  for (LightId id : scene.light_order) {
-    const Light& light = scene.light(id);
-    const bool directional = light.kind == LightKind::directional;
-    ends.push_back({directional, Box(directional ? -light.direction : light.position)});
-  }
+  for (const LightId id : scene.light_order) ends.push_back(end_of(scene.light(id)));
   return ends;
 }
 
@@ -191,12 +202,12 @@ double surface_area(std::span<const TunnelSection> tunnel, const std::vector<Lig
   const float extent = all.isEmpty() ? 0 : all.size().length();
   double area = 0;
   for (const TunnelSection& section : tunnel) {
-    if (section.history == kEye) continue;
+    if (section.history.is_eye()) continue;
     const Box origins = origins_of(tunnel, section);
     if (!section.points.isEmpty()) area += surface_area({origins, section.points});
     if (!section.leaving.isEmpty()) area += surface_area(extruded(origins, section.leaving, extent));
     for (std::size_t light = 0; !section.points.isEmpty() && light < lights.size(); ++light) {
-      if (((section.open | section.blocked) & light_bit(light)) == 0) continue;
+      if (!(section.open | section.blocked).has(light)) continue;
       const LightEnd& end = lights[light];
       area +=
           surface_area(end.directional ? extruded(section.points, end.end, extent) : Shaft{section.points, end.end});
@@ -254,16 +265,15 @@ bool find_touches(std::span<const TunnelSection> tunnel, const TunnelTest& test,
     Touch touch;
     touch.history = section.history;
     touch.ray = is_ray_touched(tunnel, section, test);
-    for (std::size_t light = 0; (section.open | section.blocked) != 0 && light < test.lights.size(); ++light) {
-      const std::uint32_t bit = light_bit(light);
-      const bool is_open = (section.open & bit) != 0, is_blocked = (section.blocked & bit) != 0;
+    for (std::size_t light = 0; !(section.open | section.blocked).empty() && light < test.lights.size(); ++light) {
+      const bool is_open = section.open.has(light), is_blocked = section.blocked.has(light);
       const bool after = (is_open || (is_blocked && test.change.count_blockers)) &&
                          is_light_touched(section, test.lights[light], test.change.shadows_after, test);
       const bool before = is_blocked && is_light_touched(section, test.lights[light], test.change.shadows_before, test);
-      if (is_open && after) touch.open |= bit;
-      if (before || (is_blocked && after)) touch.blocked |= bit;
+      if (is_open && after) touch.open.add(light);
+      if (before || (is_blocked && after)) touch.blocked.add(light);
     }
-    if (!touch.ray && (touch.open | touch.blocked) == 0) continue;
+    if (!touch.ray && (touch.open | touch.blocked).empty()) continue;
     if (touches == nullptr) return true;
     any = true;
     touches->push_back(touch);

@@ -12,16 +12,16 @@
 namespace relook {
 
 struct TunnelSection {
-  History history = kEye;
+  History history;
   float slack = 0;                      // metres that a ray is tested beyond its hit, at most
-  std::uint32_t open = 0, blocked = 0;  // lights that some node's shadow segment reaches, or does not
-  Box points;                           // the hits, and the origins of what leaves them; at kEye: of primary rays
+  LightSet open = {}, blocked = {};     // lights that some node's shadow segment reaches, or does not
+  Box points;                           // the hits, and the origins of what leaves them; at the eye: of primary rays
   Box leaving;                          // unit directions of the rays that met nothing
 
   bool operator==(const TunnelSection&) const = default;
 };
 
-/// Sections by history, increasing; the first is kEye's. Empty if no tree is inside.
+/// Sections by history, increasing; the first is the eye's. Empty if no tree is inside.
 using Sections = std::vector<TunnelSection>;
 
 /// The section of a history, or null.
@@ -38,6 +38,7 @@ struct LightEnd {
   bool directional = false;
   Box end;
 };
+[[nodiscard]] std::vector<LightEnd> light_ends(const RayScene& scene);
 [[nodiscard]] std::vector<LightEnd> light_ends(const Scene& scene);
 
 /// Of all shafts of a tunnel together, those of rays that met nothing as far as the tunnel's own extent: in square

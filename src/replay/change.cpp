@@ -3,42 +3,18 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "edit/effect.h"
 #include "trace/box_range.h"
 
 namespace relook {
 namespace {
 
-/// What decides where a cut-out surface has holes.
-bool same_holes(const Material& a, const Material& b) {
-  return a.alpha_cutoff == b.alpha_cutoff && a.base_color.a == b.base_color.a &&
-         a.slot(Slot::base_color) == b.slot(Slot::base_color);
-}
-
-/// Do the rays that a surface spawns leave in the same directions? `optics`: of both materials.
-bool same_directions(const Material& a, const Material& b, const SurfaceOptics& optics) {
-  const bool same_normal = a.normal_scale == b.normal_scale && a.slot(Slot::normal) == b.slot(Slot::normal);
-  const bool same_coat = a.clearcoat_normal_scale == b.clearcoat_normal_scale &&
-                         a.slot(Slot::clearcoat_normal) == b.slot(Slot::clearcoat_normal);
-  return (same_normal || !optics.spawns()) && (same_coat || !optics.coat_reflects);
-}
-
-/// `optics`: of the object's mesh with `after`.
-std::uint8_t material_flags(const RayObject& before, const Material& after, const SurfaceOptics& optics) {
+unsigned flags_of(const ObjectEffect& effect) {
   unsigned flags = 0;
-  if (before.optics.cut_out != optics.cut_out || (optics.cut_out && !same_holes(*before.material, after)) ||
-      before.optics.culls_back != optics.culls_back)
-    flags |= RayChange::moved | RayChange::shadows;
-  if (before.optics.passes_light != optics.passes_light) flags |= RayChange::shadows;
-  if (before.optics != optics || !same_directions(*before.material, after, optics)) flags |= RayChange::respawns;
-  return static_cast<std::uint8_t>(flags);
-}
-
-bool same_placement(const Light& a, const Light& b) {
-  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
-}
-bool same_color(const Light& a, const Light& b) {
-  return a.color == b.color && a.intensity == b.intensity && a.range == b.range && a.inner_cone == b.inner_cone &&
-         a.outer_cone == b.outer_cone;
+  if (effect.moved) flags |= RayChange::moved;
+  if (effect.shadows) flags |= RayChange::shadows;
+  if (effect.respawns) flags |= RayChange::respawns;
+  return flags;
 }
 
 /// Collects the flags of objects and their values before the edit.
@@ -48,19 +24,17 @@ class ObjectChanges {
       : ray_scene_(ray_scene), scene_(scene), change_(change) {}
 
   void move(const SceneDelta::ObjectChange& object) {
-    Object placement = object.before;
-    placement.material = scene_.object(object.id).material;
-    if (placement == scene_.object(object.id)) return;  // only its material is another one
-    flag(object.id, RayChange::moved | RayChange::shadows);
+    flag(object.id, effect_of(object.before, scene_.object(object.id)));
   }
   void compare_material(ObjectId id, const Material& after) {
     if (id.index() >= ray_scene_.size() || !scene_.object(id).alive) return;
     const RayObject& before = ray_scene_.object(id);
-    if (before.alive) flag(id, material_flags(before, after, surface_optics(after, *before.mesh)));
+    if (before.alive) flag(id, effect_of(*before.material, before.optics, after, surface_optics(after, *before.mesh)));
   }
 
  private:
-  void flag(ObjectId id, unsigned flags) {
+  void flag(ObjectId id, const ObjectEffect& effect) {
+    const unsigned flags = flags_of(effect);
     if (flags == 0) return;
     change_.rays.reserve(scene_.objects.size());
     std::uint8_t& known = change_.rays.objects[id.index()];
@@ -69,9 +43,9 @@ class ObjectChanges {
       change_.rays.before.push_back(ray_scene_.object(id));
     }
     known = static_cast<std::uint8_t>(known | flags);
-    change_.any_moved = change_.any_moved || (flags & RayChange::moved) != 0;
-    change_.any_shadows = change_.any_shadows || (flags & RayChange::shadows) != 0;
-    change_.any_respawns = change_.any_respawns || (flags & RayChange::respawns) != 0;
+    change_.any_moved = change_.any_moved || effect.moved;
+    change_.any_shadows = change_.any_shadows || effect.shadows;
+    change_.any_respawns = change_.any_respawns || effect.respawns;
   }
 
   const RayScene& ray_scene_;
@@ -83,9 +57,9 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
                         StepChange& change) {
   std::vector<LightId> moved;
   for (const auto& light : delta.lights) {
-    const Light& after = scene.light(light.id);
-    if (!same_placement(light.before, after)) moved.push_back(light.id);
-    if (!same_color(light.before, after)) change.colors.parameters.lights.push_back(light.id);
+    const LightEffect effect = effect_of(light.before, scene.light(light.id));
+    if (effect.moved) moved.push_back(light.id);
+    if (effect.recolored) change.colors.parameters.lights.push_back(light.id);
   }
   std::ranges::sort(change.colors.parameters.lights);
   change.rays.old_lights = old_lights;

@@ -61,11 +61,15 @@ class ImagePass {
     const GrowScene grow = parts_.grow(build_levels());
     ChangeBoxes boxes;
     if (change_.touches_segments()) boxes = find_boxes();
-    const std::vector<LightEnd> ends = light_ends(parts_.state.scene());
+    const std::vector<LightEnd> ends = light_ends(parts_.rays);
     const TunnelTest tunnel_test{boxes, ends};
     const UpdatePass pass{.stored = stored_,
                           .programs = parts_.programs,
-                          .what = {.change = change_, .tasks = tasks, .grow = grow, .keeps_trees = kind_.keeps_trees},
+                          .what = {.change = change_,
+                                   .tasks = tasks,
+                                   .scene = parts_.rays,
+                                   .grow = grow,
+                                   .keeps_trees = kind_.keeps_trees},
                           .where = find_where(known_leaves, tasks, tunnel_test)};
     std::vector<TileWork> works(parts_.image().trees.size());
     parallel_for(works.size(), [&](std::size_t tile) { works[tile] = find_tile_work(pass, tile); });

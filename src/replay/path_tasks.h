@@ -24,7 +24,7 @@ struct PathTasks {
 
 /// The image side of a search.
 struct PathSearch {
-  const RayScene& rays;  // after the change
+  const ColorScene& rays;  // after the change
   const PathTable& paths;
   const PathIndex& index;              // of `paths`
   const std::vector<LightId>& lights;  // light order of the paths
@@ -32,7 +32,7 @@ struct PathSearch {
   const PathClasses& classes;
 };
 /// Both outlive it. `rays`: after the change.
-[[nodiscard]] inline PathSearch search_in(const StoredImage& stored, const RayScene& rays) {
+[[nodiscard]] inline PathSearch search_in(const StoredImage& stored, const ColorScene& rays) {
   const Image& image = stored.image();
   return {rays, image.paths, stored.index(), stored.lights(), image.view.shadow_bits, stored.classes()};
 }

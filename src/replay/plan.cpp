@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edit/journal_walk.h"
 #include "replay/replay.h"
 
 namespace relook {
@@ -36,38 +37,50 @@ class ProxyReplay {
   ProxyReplay(SceneState state, const ViewOptions& view) : replayer_(replayer_of(std::move(state), view)) {}
 
   std::vector<PlannedFrame> run(const Journal& journal, const Progress& progress) {
-    const std::filesystem::path folder = journal.path.parent_path();
-    for (std::size_t i = 0; i < journal.steps.size(); ++i) {
-      const JournalStep& step = journal.steps[i];
-      if (progress) progress(static_cast<double>(i) / static_cast<double>(journal.steps.size()));
-      const StepFrames edits = frames_of(step);
-      ChangeClass change = ChangeClass::color;
-      PlannedFrame frame;
-      frame.name = step.name;
-      for (std::size_t number = 0; number < edits.size(); ++number) {
-        frame.place = place_of(step, static_cast<std::uint32_t>(i + 1), number);
-        note(frame, step.drag.empty() ? replayer_.step(edits[number], journal.file, folder)
-                                      : replayer_.drag(edits[number], journal.file, folder));
-        change = combined(change, frames_.back().classification.change);
-      }
-      if (!frame.place.number) continue;
-      frame.is_whole_step = true;
-      StepResult result = step.drag.empty() ? StepResult() : replayer_.release();
-      result.classification.change = change;
-      note(frame, result);
+    for (const JournalEvent& event : JournalWalk(journal)) {
+      if (progress && event.is_first_frame())
+        progress(static_cast<double>(event.place.step - 1) / static_cast<double>(journal.steps.size()));
+      follow(event, journal);
     }
     return std::move(frames_);
   }
 
  private:
+  void follow(const JournalEvent& event, const Journal& journal) {
+    const std::filesystem::path folder = journal.path.parent_path();
+    switch (event.kind) {
+      case EventKind::base:
+        break;
+      case EventKind::edit:
+        note(event, replayer_.step(event.edit(), journal.file, folder));
+        break;
+      case EventKind::drag:
+        note(event, replayer_.drag(event.edit(), journal.file, folder));
+        break;
+      case EventKind::release:
+        note(event, replayer_.release());
+        break;
+      case EventKind::wedge_end:
+        note(event, {});
+        break;
+    }
+  }
+
   static Replayer replayer_of(SceneState state, const ViewOptions& view) {
     RenderStats stats;
     Image image = preprocess(state.scene(), view, stats);
     return {std::move(state), std::move(image)};
   }
 
-  void note(PlannedFrame frame, const StepResult& result) {
+  void note(const JournalEvent& event, const StepResult& result) {
+    PlannedFrame frame;
+    frame.place = event.place;
+    frame.is_whole_step = !event.has_frame();
+    frame.name = event.step->name;
     frame.classification = result.classification;
+    if (event.is_first_frame()) step_class_ = ChangeClass::color;
+    if (frame.is_whole_step) frame.classification.change = step_class_;
+    step_class_ = combined(step_class_, frame.classification.change);
     frame.samples_affected = result.counters.samples_affected;
     frame.pixels_changed = result.counters.pixels_changed;
     frame.seconds = seconds_of(result.seconds);
@@ -76,6 +89,7 @@ class ProxyReplay {
   }
 
   Replayer replayer_;
+  ChangeClass step_class_ = ChangeClass::color;  // of the present step's frames so far
   std::vector<PlannedFrame> frames_;
 };
 

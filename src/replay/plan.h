@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "edit/apply.h"
+#include "edit/frame_place.h"
 #include "edit/journal.h"
 #include "frame/image.h"
 #include "image/render.h"
-#include "replay/frame_place.h"
 #include "scene/compile/state.h"
 
 namespace relook {

@@ -24,7 +24,7 @@ class TreeCompressor {
         what_(pass.what),
         trees_(image_.trees[tile]),
         rect_(tile_rect(tile, image_.frame.width, image_.frame.height)),
-        primaries_(what_.grow.scene.scene().camera, image_.view),
+        primaries_(what_.grow.scene.camera(), image_.view),
         set_(set),
         shader_(tools.shader),
         block_(tools.block) {}
@@ -173,7 +173,7 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
     where.grouped_tiles = tiles_with_tasks(parts_.stored.regions(), found.tasks, result.counters.by_groups);
   const UpdatePass pass{.stored = parts_.stored,
                         .programs = parts_.programs,
-                        .what = {.change = change, .tasks = found.tasks, .grow = grow},
+                        .what = {.change = change, .tasks = found.tasks, .scene = parts_.rays, .grow = grow},
                         .where = std::move(where)};
   parallel_for(found.works.size(), [&](std::size_t tile) {
     if (!kept.tiles[tile].is_valid) found.works[tile] = find_tile_work(pass, tile);

@@ -41,10 +41,10 @@ struct Replayer::Impl {
     StepChange change = find_change(parts.rays, scene, delta, parts.stored.lights());
     if (change.touches_segments() && !change.rays.lights_changed && !parts.stored.regions().has_tunnels())
       parts.stored.build_tunnels(parts.grow());
-    parts.rays.update(scene, delta);
+    parts.rays = ColorScene(parts.rays.after(scene, delta), scene);
     const std::vector<ObjectId> changed = selection_of(change);
     if (parts.level) parts.level->note_changed(changed);
-    parts.objects.note_changed(changed);
+    parts.objects.go_on(parts.rays, changed);
     forget_programs(change);
     result.counters.samples_total = parts.stored.samples();
     return change;

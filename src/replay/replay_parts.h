@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cache/residency/residency.h"
+#include "color/color_scene.h"
 #include "image/stored_image.h"
 #include "replay/color_tree_store.h"
 #include "replay/kept_selection.h"
@@ -32,7 +33,7 @@ struct ReplayParts {
   [[nodiscard]] const Tracer::TopLevel& current_level(std::span<const ObjectId> absent);
 
   SceneState state;
-  RayScene rays;
+  ColorScene rays;  // of the state
   std::unique_ptr<Residency> owned_residency;
   Residency& residency{*owned_residency};
   StoredImage stored;

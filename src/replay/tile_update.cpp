@@ -7,6 +7,7 @@
 #include "cache/residency/residency.h"
 #include "image/sampling.h"
 #include "trace/tree/find_hits.h"
+#include "trace/tree/pack.h"
 #include "trace/tree/probe.h"
 
 namespace relook {
@@ -20,7 +21,7 @@ class TileUpdater {
         what_(pass.what),
         trees_(image_.trees[tile]),
         rect_(tile_rect(tile, image_.frame.width, image_.frame.height)),
-        primaries_(what_.grow.scene.scene().camera, image_.view),
+        primaries_(what_.grow.scene.camera(), image_.view),
         shader_(tools.shader),
         block_(tools.block),
         finder_(what_.grow, what_.change.rays, result_.counters) {
@@ -196,7 +197,7 @@ GrowCounters bring_back_hits(const UpdatePass& pass, std::size_t tile, const Lea
 }
 
 TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work, Pool<TileTools>& tools) {
-  const auto own = tools.take([&] { return std::make_unique<TileTools>(pass.what.grow.scene, pass.programs); });
+  const auto own = tools.take([&] { return std::make_unique<TileTools>(pass.what.scene, pass.programs); });
   return TileUpdater(pass, tile, *own).update(work);
 }
 

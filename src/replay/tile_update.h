@@ -37,7 +37,8 @@ struct UpdatePass {
   struct What {
     const StepChange& change;
     const PathTasks& tasks;
-    const GrowScene& grow;    // the scene after the change
+    const ColorScene& scene;  // after the change
+    const GrowScene& grow;    // the same
     bool keeps_trees = true;  // false: an intermediate frame of a drag
   };
   /// Where to look for it.
@@ -56,7 +57,7 @@ struct UpdatePass {
 
 /// What work on one tile after another needs; one per thread.
 struct TileTools {
-  TileTools(const RayScene& scene, ProgramTable& programs) : shader(scene, programs) {}
+  TileTools(const ColorScene& scene, ProgramTable& programs) : shader(scene, programs) {}
 
   Shader shader;
   TreeBlock block;  // empty between tiles; keeps its memory

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/files.h"
 #include "base/hash.h"
+#include "edit/journal_walk.h"
 #include "scene/gltf/gltf_source.h"
 #include "scene/gltf/import_rules.h"
 
@@ -61,9 +62,21 @@ bool replaces_number(const PatchOperation& operation) {
                                 std::ranges::all_of(value, [](const Json& item) { return item.is_number(); })));
 }
 
+const char* name_of(StepForm form) {
+  switch (form) {
+    case StepForm::drag:
+      return "drag";
+    case StepForm::wedge:
+      return "wedge";
+    case StepForm::edit:
+      break;
+  }
+  return "edit";
+}
+
 }  // namespace
 
-EditHashes::EditHashes(const Journal& journal) : by_step_(1) {
+EditHashes::EditHashes(const Journal& journal) : by_step_(journal.steps.size() + 1) {
   std::map<std::string, std::string> hashes_of_files;
   const auto hash_of = [&](const std::string& name) -> const std::string& {
     const auto [found, is_new] = hashes_of_files.try_emplace(name);
@@ -72,19 +85,17 @@ EditHashes::EditHashes(const Journal& journal) : by_step_(1) {
     return found->second;
   };
   std::string last;
-  for (const JournalStep& step : journal.steps) {
-    std::string& hashes = by_step_.emplace_back();
-    hashes.reserve(frames_of(step).size() * kDigits);
-    const char* kind = !step.drag.empty() ? "drag" : !step.wedge.empty() ? "wedge" : "edit";
-    for (const Edit& edit : frames_of(step)) {
-      std::string text = last + kind + std::to_string(hashes.size() / kDigits);
-      for (const PatchOperation& operation : edit)
-        text += Json{static_cast<int>(operation.op), operation.path, operation.from, operation.value}.dump(
-            -1, ' ', false, Json::error_handler_t::replace);
-      for (const std::string& name : files_of(edit)) text += hash_of(name);
-      hashes += last = hash128(bytes_of(text));
-    }
-  }
+  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+    std::string& hashes = by_step_[event.place.step];
+    if (event.is_first_frame()) hashes.reserve(event.step->frames() * kDigits);
+    const Edit edit = event.edit();
+    std::string text = last + name_of(event.step->form()) + std::to_string(event.frame);
+    for (const PatchOperation& operation : edit)
+      text += Json{static_cast<int>(operation.op), operation.path, operation.from, operation.value}.dump(
+          -1, ' ', false, Json::error_handler_t::replace);
+    for (const std::string& name : files_of(edit)) text += hash_of(name);
+    hashes += last = hash128(bytes_of(text));
+  });
 }
 
 std::string EditHashes::at(std::uint32_t step, std::size_t frame) const {
@@ -108,10 +119,10 @@ std::vector<std::string> files_of(const Edit& edit) {
 
 std::vector<std::filesystem::path> files_of(const Journal& journal) {
   std::vector<std::filesystem::path> paths;
-  for (const JournalStep& step : journal.steps)
-    for (const Edit& edit : frames_of(step))
-      for (const std::string& name : files_of(edit))
-        std::ranges::move(with_named_files(journal, name), std::back_inserter(paths));
+  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+    for (const std::string& name : files_of(event.edit()))
+      std::ranges::move(with_named_files(journal, name), std::back_inserter(paths));
+  });
   std::ranges::sort(paths);
   paths.erase(std::ranges::unique(paths).begin(), paths.end());
   return paths;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "edit/journal.h"
-#include "replay/frame_place.h"
 
 namespace relook {
 

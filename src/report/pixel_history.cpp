@@ -96,7 +96,7 @@ struct PixelHistory::Impl {
   SceneState state;
   ViewOptions view;
   TileRect pixel;
-  RayScene rays;
+  ColorScene rays;
   SceneLevel level{true};  // asked for blockers
   Rgba color{0, 0, 0, 0};
   PixelFacts facts;
@@ -129,7 +129,7 @@ struct PixelHistory::Impl {
     const SceneDelta delta = apply_edit(state, edit, file, folder);
     result.classification = classify(state.scene(), delta);
     StepChange change = find_change(rays, state.scene(), delta, old_lights);
-    rays.update(state.scene(), delta);
+    rays = ColorScene(rays.after(state.scene(), delta), state.scene());
     level.note_changed(selection_of(change));
     result.before = color;
     const PixelFacts before = std::move(facts);

@@ -10,9 +10,9 @@
 
 #include "base/json.h"
 #include "edit/apply.h"
+#include "edit/frame_place.h"
 #include "image/counters.h"
 #include "frame/image.h"
-#include "replay/frame_place.h"
 #include "scene/camera.h"
 
 namespace relook {

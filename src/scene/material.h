@@ -44,6 +44,7 @@ struct TextureSlot {
   bool operator==(const TextureSlot&) const = default;
 };
 
+/// In the order in which sentences name them.
 enum class Slot : std::uint8_t {
   base_color, metallic_roughness, normal, occlusion, emissive,
   transmission, thickness, specular, specular_color,
@@ -52,11 +53,8 @@ enum class Slot : std::uint8_t {
   count
 };
 inline constexpr std::size_t kSlotCount = static_cast<std::size_t>(Slot::count);
-/// True for slots whose 8-bit images are sRGB-encoded.
-[[nodiscard]] constexpr bool is_color_slot(Slot slot) {
-  return slot == Slot::base_color || slot == Slot::emissive || slot == Slot::specular_color || slot == Slot::sheen_color;
-}
 
+/// What a look document calls its members, and all else there is to know of them: material_fields.h.
 struct Material {
   std::string name;
   IlluminationModel model = IlluminationModel::metallic_roughness;

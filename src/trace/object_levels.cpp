@@ -12,10 +12,11 @@ constexpr std::size_t kMostKept = 4096;
 
 ObjectLevels::ObjectLevels(const RayScene& scene, MemoryMonitor monitor)
     : scene_(scene), tracer_(false, std::move(monitor)) {
-  note_changed({});
+  go_on(scene, {});
 }
 
-void ObjectLevels::note_changed(std::span<const ObjectId> objects) {
+void ObjectLevels::go_on(const RayScene& scene, std::span<const ObjectId> changed) {
+  scene_ = scene;
   if (objects_ != scene_.size() || levels_.size() > kMostKept) {
     auto none_built = std::make_unique<std::atomic<const Tracer::TopLevel*>[]>(scene_.size());
     by_object_ = std::move(none_built);
@@ -23,9 +24,9 @@ void ObjectLevels::note_changed(std::span<const ObjectId> objects) {
     levels_.clear();
     return;
   }
-  for (const ObjectId id : objects)
+  for (const ObjectId id : changed)
     if (const Tracer::TopLevel* old = by_object_[id.index()].exchange(nullptr))
-      std::erase_if(levels_, [&](const auto& level) { return level.get() == old; });
+      std::erase_if(levels_, [&](const Built& built) { return built.level.get() == old; });
 }
 
 const Tracer::TopLevel& ObjectLevels::of(ObjectId id) const {
@@ -35,10 +36,10 @@ const Tracer::TopLevel& ObjectLevels::of(ObjectId id) const {
   if (const Tracer::TopLevel* level = place.load(std::memory_order_relaxed)) return *level;
   run_isolated([&] {
     const Tracer::Placed placed{id, &scene_.object(id)};
-    levels_.push_back(std::make_unique<const Tracer::TopLevel>(tracer_.build(std::span(&placed, 1))));
+    levels_.push_back({scene_.share(id), std::make_unique<const Tracer::TopLevel>(tracer_.build(std::span(&placed, 1)))});
   });
-  place.store(levels_.back().get(), std::memory_order_release);
-  return *levels_.back();
+  place.store(levels_.back().level.get(), std::memory_order_release);
+  return *levels_.back().level;
 }
 
 }  // namespace relook

@@ -14,21 +14,25 @@ namespace relook {
 
 class ObjectLevels {
  public:
-  /// `scene` outlives it.
   explicit ObjectLevels(const RayScene& scene, MemoryMonitor monitor = {});
 
-  /// The scene has changed: `objects` are those whose entries in it are others than before, or new. Not while rays are
-  /// shot.
-  void note_changed(std::span<const ObjectId> objects);
+  /// Goes on with another state of the scene: `changed` are the objects that rays meet otherwise than before, or new
+  /// ones. Not while rays are shot.
+  void go_on(const RayScene& scene, std::span<const ObjectId> changed);
   /// The level over one object.
   [[nodiscard]] const Tracer::TopLevel& of(ObjectId id) const;
 
  private:
-  const RayScene& scene_;
+  struct Built {
+    std::shared_ptr<const RayObject> object;  // to which the level points
+    std::unique_ptr<const Tracer::TopLevel> level;
+  };
+
+  RayScene scene_;
   mutable std::mutex mutex_;  // of everything below
   mutable Tracer tracer_;
-  mutable std::vector<std::unique_ptr<const Tracer::TopLevel>> levels_;  // those that are built
-  std::unique_ptr<std::atomic<const Tracer::TopLevel*>[]> by_object_;    // null: not built; read without the mutex
+  mutable std::vector<Built> levels_;                                 // those that are built
+  std::unique_ptr<std::atomic<const Tracer::TopLevel*>[]> by_object_;  // null: not built; read without the mutex
   std::size_t objects_ = 0;
 };
 

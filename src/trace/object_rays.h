@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "trace/tree/grow.h"
+#include "trace/tree/shadow_segment.h"
 
 namespace relook {
 

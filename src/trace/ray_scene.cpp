@@ -1,180 +1,124 @@
 #include "trace/ray_scene.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-
-#include "scene/compile/compile_transform.h"
-#include "scene/compile/deformation.h"
-#include "scene/compile/displacement.h"
-#include "trace/rounding.h"
 
 namespace relook {
 namespace {
 
-Imath::M33f normal_matrix(const Transform& m) {
-  // Cofactors of the linear part: the inverse transpose up to the determinant, whose sign is handled by `flipped`.
-  const auto cofactor = [&](int r0, int c0, int r1, int c1) { return m[r0][c0] * m[r1][c1] - m[r0][c1] * m[r1][c0]; };
-  return Imath::M33f(cofactor(1, 1, 2, 2), cofactor(1, 2, 2, 0), cofactor(1, 0, 2, 1),  //
-                     cofactor(2, 1, 0, 2), cofactor(2, 2, 0, 0), cofactor(2, 0, 0, 1),  //
-                     cofactor(0, 1, 1, 2), cofactor(0, 2, 1, 0), cofactor(0, 0, 1, 1));
-}
+/// The users of materials as they are to be; those of few materials change.
+class UserLists {
+ public:
+  UserLists(const SharedTable<std::vector<ObjectId>>& before, std::size_t materials)
+      : before_(before), changed_(materials) {}
 
-float determinant(const Transform& m, const Imath::M33f& cofactors) {
-  return m[0][0] * cofactors[0][0] + m[0][1] * cofactors[0][1] + m[0][2] * cofactors[0][2];
-}
-
-/// |M| |M^-1| / 3 in the Frobenius norm; the inverse is the transposed cofactors over the determinant.
-float condition_number(const Transform& m, const Imath::M33f& cofactors, float det) {
-  double linear = 0, inverse = 0;
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) {
-      linear += double{m[row][column]} * m[row][column];
-      inverse += double{cofactors[row][column]} * cofactors[row][column];
-    }
-  const double condition = std::sqrt(linear) * std::sqrt(inverse) / (3 * std::fabs(double{det}));
-  return condition < 1e6 ? static_cast<float>(std::max(condition, 1.0)) : 1e6F;  // singular ones too
-}
-
-/// Coincident hits: what is smaller lies upon what is larger, as decals do; among equals the name decides.
-std::uint64_t tie_key(const Object& object, const Box& bounds) {
-  constexpr unsigned kSizeBits = 16, kDroppedBits = 15;  // exponent and 8 bits of a positive float
-  float size = 0;
-  for (int axis = 0; axis < 3 && !bounds.isEmpty(); ++axis)
-    for (int i = 0; i < 3; ++i) size += (bounds.max[i] - bounds.min[i]) * std::fabs(object.to_world[i][axis]);
-  const std::uint64_t rank = std::bit_cast<std::uint32_t>(size) >> kDroppedBits;
-  return rank << (64 - kSizeBits) | object.key >> kSizeBits;
-}
-
-/// The largest coordinates in a box by magnitude.
-Point largest_in(const Box& bounds) {
-  Point largest(0, 0, 0);
-  for (int i = 0; i < 3; ++i) largest[i] = std::max(std::fabs(bounds.min[i]), std::fabs(bounds.max[i]));
-  return largest;
-}
-
-/// A mesh without extent along one direction. Normals then follow from the triangles: across the sheet.
-void flatten(Mesh& mesh, const Transform& along) {
-  mesh.normals.clear(), mesh.tangents.clear(), mesh.targets.clear(), mesh.joints.clear(), mesh.joint_weights.clear();
-  mesh.bounds.makeEmpty();
-  for (Point& position : mesh.positions) {
-    position = position * along;
-    mesh.bounds.extendBy(position);
+  void add(MaterialId material, ObjectId object) {
+    std::vector<ObjectId>& users = list(material);
+    users.insert(std::ranges::lower_bound(users, object), object);
   }
-}
+  void remove(MaterialId material, ObjectId object) {
+    std::vector<ObjectId>& users = list(material);
+    users.erase(std::ranges::lower_bound(users, object));
+  }
+  void write(SharedTable<std::vector<ObjectId>>& table) && {
+    for (std::size_t i = 0; i < changed_.size(); ++i) {
+      if (i >= table.size())
+        table.push_back(changed_[i] ? std::move(changed_[i]) : std::make_shared<std::vector<ObjectId>>());
+      else if (changed_[i])
+        table.replace(i, std::move(changed_[i]));
+    }
+  }
 
-/// Deformed, then displaced, then flattened.
-Mesh shaped(const Mesh& mesh, const Object& object, const Transform* sheet) {
-  Mesh bent = object.deformation ? deformed(mesh, *object.deformation) : Mesh();
-  const Mesh& shape = object.deformation ? bent : mesh;
-  Mesh result = object.displacement ? displaced(shape, *object.displacement) : object.deformation ? std::move(bent) : mesh;
-  if (sheet != nullptr) flatten(result, *sheet);
-  return result;
+ private:
+  std::vector<ObjectId>& list(MaterialId material) {
+    const std::size_t i = material.index();
+    if (!changed_[i])
+      changed_[i] = i < before_.size() ? std::make_shared<std::vector<ObjectId>>(before_[i])
+                                       : std::make_shared<std::vector<ObjectId>>();
+    return *changed_[i];
+  }
+
+  const SharedTable<std::vector<ObjectId>>& before_;
+  std::vector<std::shared_ptr<std::vector<ObjectId>>> changed_;  // by MaterialId; null: as before
+};
+
+bool same_place(const RayLight& a, const Light& b) {
+  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
 }
 
 }  // namespace
 
-RayScene::RayScene(const Scene& scene) { update(scene, {}); }
+RayScene::RayScene(const Scene& scene) : RayScene([&] {
+  auto tables = std::make_shared<Tables>();
+  tables->camera = std::make_shared<const Camera>(scene.camera);
+  tables->lights = std::make_shared<const Lights>();
+  tables->maker = std::make_shared<RayObjectMaker>();
+  apply(*tables, scene, {});
+  return std::shared_ptr<const Tables>(std::move(tables));
+}()) {}
 
-void RayScene::update(const Scene& scene, const SceneDelta& delta) {
-  scene_ = &scene;
-  std::erase_if(derived_, [](const auto& known) { return known.second.result.expired(); });
-  const auto remake = [&](std::size_t i) {
-    const Object& object = scene.objects[i];
-    *objects_[i] = make_object(scene, object, scene.material(object.material));
-  };
-  materials_.resize(scene.materials.size());
-  for (const auto& change : delta.materials)
-    materials_[change.id.index()] = std::make_shared<const Material>(scene.material(change.id));
-  for (std::size_t i = 0; i < materials_.size(); ++i)
-    if (!materials_[i]) materials_[i] = std::make_shared<const Material>(scene.materials[i]);
-  users_.resize(scene.materials.size());
-  const std::size_t known = objects_.size();
-  while (objects_.size() < scene.objects.size()) objects_.push_back(std::make_unique<RayObject>());
-  for (std::size_t i = known; i < objects_.size(); ++i) {
-    remake(i);
-    listed_.push_back(scene.objects[i].material);
-    users_[listed_[i].index()].emplace_back(static_cast<std::uint32_t>(i));
-  }
-  for (const auto& change : delta.objects) {
-    remake(change.id.index());
-    list_user(change.id, scene.object(change.id).material);
-  }
-  for (const auto& change : delta.materials)
-    for (const ObjectId user : users_[change.id.index()]) {
-      set_material(*objects_[user.index()], materials_[change.id.index()]);
-    }
+RayScene RayScene::after(const Scene& scene, const SceneDelta& delta) const {
+  auto tables = std::make_shared<Tables>(*tables_);
+  apply(*tables, scene, delta);
+  return RayScene(std::shared_ptr<const Tables>(std::move(tables)));
 }
 
-void RayScene::list_user(ObjectId object, MaterialId material) {
-  if (listed_[object.index()] == material) return;
-  std::vector<ObjectId>& old = users_[listed_[object.index()].index()];
-  old.erase(std::ranges::lower_bound(old, object));
-  listed_[object.index()] = material;
-  std::vector<ObjectId>& users = users_[material.index()];
-  users.insert(std::ranges::lower_bound(users, object), object);
+void RayScene::apply(Tables& tables, const Scene& scene, const SceneDelta& delta) {
+  tables.maker->drop_unused();
+  for (const auto& change : delta.materials)
+    if (change.id.index() < tables.materials.size())
+      tables.materials.replace(change.id.index(), std::make_shared<const Material>(scene.material(change.id)));
+  for (std::size_t i = tables.materials.size(); i < scene.materials.size(); ++i)
+    tables.materials.push_back(std::make_shared<const Material>(scene.materials[i]));
+  apply_to_objects(tables, scene, delta);
+  const Lights& lights = *tables.lights;
+  const auto stays = [&](std::size_t place) {
+    return same_place(lights.placed[place], scene.light(scene.light_order[place]));
+  };
+  bool all_stay = lights.order == scene.light_order;
+  for (std::size_t place = 0; all_stay && place < lights.order.size(); ++place) all_stay = stays(place);
+  if (all_stay) return;
+  Lights now{scene.light_order, {}};
+  for (const LightId id : now.order) now.placed.emplace_back(scene.light(id));
+  tables.lights = std::make_shared<const Lights>(std::move(now));
+}
+
+void RayScene::apply_to_objects(Tables& tables, const Scene& scene, const SceneDelta& delta) {
+  RayObjectMaker& maker = *tables.maker;
+  UserLists users(tables.users, scene.materials.size());
+  const auto remade = [&](const Object& object) {
+    return std::make_shared<const RayObject>(
+        maker.make(scene, object, tables.materials.share(object.material.index())));
+  };
+  const std::size_t known = tables.objects.size();
+  for (std::size_t i = known; i < scene.objects.size(); ++i) {
+    tables.objects.push_back(remade(scene.objects[i]));
+    users.add(scene.objects[i].material, ObjectId(static_cast<std::uint32_t>(i)));
+  }
+  for (const auto& change : delta.objects) {
+    if (change.id.index() >= known) continue;
+    const MaterialId before = tables.objects[change.id.index()].material_id, now = scene.object(change.id).material;
+    tables.objects.replace(change.id.index(), remade(scene.object(change.id)));
+    if (before == now) continue;
+    users.remove(before, change.id);
+    users.add(now, change.id);
+  }
+  std::move(users).write(tables.users);
+  for (const auto& change : delta.materials) {
+    const std::shared_ptr<const Material>& material = tables.materials.share(change.id.index());
+    for (const ObjectId user : tables.users[change.id.index()]) {
+      if (tables.objects[user.index()].material == material) continue;  // made anew above
+      auto object = std::make_shared<RayObject>(tables.objects[user.index()]);
+      maker.set_material(*object, material);
+      tables.objects.replace(user.index(), std::move(object));
+    }
+  }
 }
 
 RayObject RayScene::make_object(const Scene& scene, const Object& object, const Material& material) const {
-  RayObject ray_object;
-  const bool is_sheet = object.alive && dimensions_of(object.to_world) == 2;
-  const SheetTransform sheet = is_sheet ? sheet_transform(object.to_world) : SheetTransform{{}, object.to_world};
-  ray_object.mesh = mesh_of(scene, object, is_sheet ? std::optional(sheet.flatten) : std::nullopt);
   const std::size_t m = object.material.index();
-  set_material(ray_object, m < materials_.size() && materials_[m] && *materials_[m] == material
-                               ? materials_[m]
-                               : std::make_shared<const Material>(material));
-  ray_object.to_world = sheet.to_world;
-  ray_object.normal_to_world = normal_matrix(sheet.to_world);
-  const float det = determinant(sheet.to_world, ray_object.normal_to_world);
-  ray_object.offset = rounding_offset(sheet.to_world, largest_in(ray_object.mesh->bounds));
-  ray_object.flipped = det < 0;
-  ray_object.condition = condition_number(sheet.to_world, ray_object.normal_to_world, det);
-  ray_object.alive = object.alive;
-  ray_object.key = tie_key(object, ray_object.mesh->bounds);
-  return ray_object;
-}
-
-void RayScene::set_material(RayObject& object, std::shared_ptr<const Material> material) const {
-  object.material = std::move(material);
-  object.optics = surface_optics(*object.material, *object.mesh);
-  const Mesh& mesh = *object.mesh;
-  for (std::uint8_t set = 0; set < object.tangents.size(); ++set) {
-    const auto needs = [&](Slot which) {
-      const TextureSlot& slot = object.material->slot(which);
-      return slot.kind != TextureKind::none && slot.mapping == Mapping::uv && slot.texcoord == set;
-    };
-    const TextureSlot& brush = object.material->slot(Slot::anisotropy);
-    const bool is_brushed = object.material->anisotropy > 0 && brush.mapping == Mapping::uv && brush.texcoord == set;
-    const bool has_all = !mesh.normals.empty() && mesh.tangents.empty() && !mesh.uv[set].empty();
-    object.tangents[set] =
-        has_all && (is_brushed || needs(Slot::normal) || needs(Slot::clearcoat_normal)) ? tangents_of(object.mesh, set)
-                                                                                        : nullptr;
-  }
-}
-
-std::shared_ptr<const CornerTangents> RayScene::tangents_of(const std::shared_ptr<const Mesh>& mesh,
-                                                            std::uint8_t texcoord) const {
-  const std::pair key(mesh.get(), texcoord);
-  if (const auto known = derived_.find(key); known != derived_.end() && known->second.mesh.lock() == mesh)
-    if (auto result = known->second.result.lock()) return result;
-  auto result = std::make_shared<const CornerTangents>(derive_tangents(*mesh, texcoord));
-  derived_.insert_or_assign(key, Derived{mesh, result});
-  return result;
-}
-
-std::shared_ptr<const Mesh> RayScene::mesh_of(const Scene& scene, const Object& object,
-                                                const std::optional<Transform>& sheet) const {
-  const Mesh& mesh = scene.mesh(object.mesh);
-  if ((!object.deformation && !object.displacement && !sheet) || !object.alive) return {scene.assets, &mesh};
-  std::vector<Shaped>& of_mesh = shaped_[object.mesh];
-  std::erase_if(of_mesh, [](const Shaped& known) { return known.result.expired(); });
-  for (const Shaped& known : of_mesh)
-    if (known.deformation == object.deformation && known.displacement == object.displacement && known.sheet == sheet)
-      if (auto result = known.result.lock()) return result;
-  auto result = std::make_shared<const Mesh>(shaped(mesh, object, sheet ? &*sheet : nullptr));
-  of_mesh.push_back({object.deformation, object.displacement, sheet, result});
-  return result;
+  const bool is_known = m < tables_->materials.size() && tables_->materials[m] == material;
+  return tables_->maker->make(scene, object,
+                              is_known ? tables_->materials.share(m) : std::make_shared<const Material>(material));
 }
 
 }  // namespace relook

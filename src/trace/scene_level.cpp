@@ -5,7 +5,7 @@
 namespace relook {
 
 void SceneLevel::note_changed(std::span<const ObjectId> objects) {
-  if (!is_built_) return;
+  if (!base_) return;
   changed_.insert(changed_.end(), objects.begin(), objects.end());
   std::ranges::sort(changed_);
   const auto repeated = std::ranges::unique(changed_);
@@ -15,10 +15,10 @@ void SceneLevel::note_changed(std::span<const ObjectId> objects) {
 const Tracer::TopLevel& SceneLevel::current(const RayScene& scene, std::span<const ObjectId> absent) {
   // A level on top that holds much of the scene would slow every ray down.
   const std::size_t most = std::max<std::size_t>(512, scene.size() / 16);
-  if (!is_built_ || changed_.size() > most) {
+  if (!base_ || changed_.size() > most) {
     level_ = tracer_.build(scene);
     changed_.clear();
-    is_built_ = true;
+    base_ = scene;
   }
   std::vector<ObjectId> hidden;
   std::ranges::set_union(changed_, absent, std::back_inserter(hidden));
@@ -26,6 +26,7 @@ const Tracer::TopLevel& SceneLevel::current(const RayScene& scene, std::span<con
   for (ObjectId id : changed_)
     if (!std::ranges::binary_search(absent, id)) on_top.push_back({id, &scene.object(id)});
   tracer_.replace(level_, hidden, on_top);
+  on_top_ = scene;
   return level_;
 }
 

@@ -1,8 +1,8 @@
 // The top level over the whole scene through a series of edits: what an edit moves is hidden in the level built before
 // and put into a small one on top of it, so that the price of an edit follows from the edit.
 #pragma once
+#include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "trace/tracer.h"
@@ -14,15 +14,15 @@ class SceneLevel {
   explicit SceneLevel(bool count_blockers, MemoryMonitor monitor = {}) : tracer_(count_blockers, std::move(monitor)) {}
   [[nodiscard]] Tracer& tracer() { return tracer_; }
 
-  /// Notes objects whose entries in the ray scene are others than before.
+  /// Notes objects whose entries in the ray scene are others than before, for rays that meet them.
   void note_changed(std::span<const ObjectId> objects);
   /// The scene as it is now, without the objects `absent` (increasing). Valid until the next call.
   [[nodiscard]] const Tracer::TopLevel& current(const RayScene& scene, std::span<const ObjectId> absent = {});
 
  private:
   Tracer tracer_;
+  std::optional<RayScene> base_, on_top_;  // the states whose objects the level points to; none: not built
   Tracer::TopLevel level_;
-  bool is_built_ = false;
   std::vector<ObjectId> changed_;  // since the level was built, increasing
 };
 

@@ -1,17 +1,16 @@
 #include "trace/tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <new>
 #include <numeric>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "base/error.h"
 #include "trace/embree_device.h"
+#include "trace/same_crossing.h"
 #include "trace/surface.h"
 
 namespace relook {
@@ -77,32 +76,11 @@ bool is_met(const RayObject& object, const Hit& hit, const Direction& travel) {
   return !object.optics.cut_out || is_covered(object, hit);
 }
 
-/// The triangle's positions.
-std::array<Point, 3> corners(const Mesh& mesh, std::uint32_t primitive) {
-  const auto& triangle = mesh.triangles[primitive];
-  return {mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]};
-}
-bool is_at_edge(const Hit& hit) {
-  constexpr float kWidth = 0x1p-17F;
-  return std::min(std::min(hit.u, hit.v), 1 - hit.u - hit.v) <= kWidth;
-}
-
-/// A ray that meets an edge or a corner meets the triangles around it: they are one surface, not one behind another.
-/// False for the two sides of a fold, and for triangles that lie upon each other.
-bool is_same_crossing(const RayObject& object, const Meeting& a, const Meeting& b, const Query& query) {
-  if (a.object != b.object || b.t > reach(a.t, query) || !is_at_edge(a.hit) || !is_at_edge(b.hit)) return false;
-  const auto of_a = corners(*object.mesh, a.hit.primitive), of_b = corners(*object.mesh, b.hit.primitive);
-  const auto shared = std::ranges::count_if(of_a, [&](const Point& p) { return std::ranges::count(of_b, p) > 0; });
-  if (shared == 0 || shared == 3) return false;
-  const auto faces = [&](const std::array<Point, 3>& p) {
-    return ((p[1] - p[0]).cross(p[2] - p[0]) * object.normal_to_world).dot(query.ray->direction) > 0;
-  };
-  return faces(of_a) == faces(of_b);
-}
-
 bool is_behind(const RayObject& object, const Meeting& candidate, const Query& query) {
   const Meeting& last = query.ray->behind;
-  return last.object.is_none() || (last.nearer_than(candidate) && !is_same_crossing(object, last, candidate, query));
+  if (last.object.is_none() || !last.nearer_than(candidate)) return last.object.is_none();
+  const bool may_be_same = last.object == candidate.object && candidate.t <= reach(last.t, query);
+  return !may_be_same || !is_same_crossing(object, last.hit, candidate.hit, query.ray->direction);
 }
 
 void keep_nearest(const RTCFilterFunctionNArguments* args) {

@@ -13,6 +13,7 @@
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "trace/tree/grow.h"
+#include "trace/tree/shadow_segment.h"
 
 namespace relook {
 namespace {
@@ -23,10 +24,9 @@ struct TileRays {
 
 /// The rays and shadow segments of one tile, sample by sample, in the order in which the full render shoots them.
 TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile) {
-  const Scene& scene = ray_scene.scene();
   const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
   const GrowScene grow{ray_scene, nullptr, image.view.max_depth, image.view.shadow_bits};
-  const PrimaryRays primaries(scene.camera, image.view);
+  const PrimaryRays primaries(ray_scene.camera(), image.view);
   TileRays result;
   GrowCounters counters;
 TreeBlock block;
@@ -38,9 +38,9 @@ TreeBlock block;
     expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
     for (const RayNode& node : block.nodes) {
       result.rays.push_back({node.ray.origin, node.ray.direction});
-      for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light) {
+      for (std::size_t light = 0; !node.object.is_none() && light < ray_scene.light_order().size(); ++light) {
         if (block.lights[node.first_light + light].state == ShadowState::facing_away) continue;
-        const ShadowSegment segment = shadow_segment(node.point, scene.light(scene.light_order[light]));
+        const ShadowSegment segment = shadow_segment(node.point, ray_scene.light(light));
         result.shadows.push_back({segment.origin, segment.direction, segment.t_max});
       }
     }

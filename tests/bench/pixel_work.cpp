@@ -38,11 +38,11 @@ std::vector<TileSamples> by_tile(const Camera& camera, const ViewOptions& view, 
 /// Traces and shades samples; one per thread.
 class SampleRenderer {
  public:
-  SampleRenderer(const GrowScene& grow, const ViewOptions& view, ProgramTable& programs)
-      : grow_(grow), primaries_(grow.scene.scene().camera, view), shader_(grow.scene, programs) {}
+  SampleRenderer(const GrowScene& grow, const ColorScene& scene, const ViewOptions& view, ProgramTable& programs)
+      : grow_(grow), primaries_(scene.camera(), view), shader_(scene, programs) {}
 
   void render(const TileSamples& tile) {
-    const Camera& camera = grow_.scene.scene().camera;
+    const Camera& camera = grow_.scene.camera();
     const TileRect rect = tile_rect(tile.tile, camera.width, camera.height);
     for (std::size_t first = 0; first < tile.samples.size(); first += kChunkSamples) {
       const std::size_t count = std::min(kChunkSamples, tile.samples.size() - first);
@@ -72,7 +72,7 @@ class SampleRenderer {
 
 double time_pixel_work(const Scene& scene, const ViewOptions& view, std::span<const std::uint32_t> pixels) {
   const std::vector<TileSamples> tiles = by_tile(scene.camera, view, pixels);
-  const RayScene rays(scene);
+  const ColorScene rays(scene);
   Tracer tracer(view.shadow_bits > 0);
   const Tracer::TopLevel level = tracer.build(rays);
   const GrowScene grow{rays, &level, view.max_depth, view.shadow_bits};
@@ -80,7 +80,7 @@ double time_pixel_work(const Scene& scene, const ViewOptions& view, std::span<co
   return fastest(3, [&] {
     Pool<SampleRenderer> renderers;
     parallel_for(tiles.size(), [&](std::size_t i) {
-      const auto renderer = renderers.take([&] { return std::make_unique<SampleRenderer>(grow, view, programs); });
+      const auto renderer = renderers.take([&] { return std::make_unique<SampleRenderer>(grow, rays, view, programs); });
       renderer->render(tiles[i]);
     });
   });

@@ -48,15 +48,15 @@ std::vector<std::size_t> find_samples(const Image& image, const ImageRegions* gr
 SearchTimes SearchTimer::next(const Replayer& replayer, const Edit& edit, const Journal& journal) {
   const Image& image = replayer.image();
   const std::vector<LightId> lights = state_.scene().light_order;
-  RayScene rays(state_.scene());
+  const RayScene before(state_.scene());
   PathIndex index;
   PathClasses classes(false);
   index.extend(image.paths, {lights.size(), image.view.shadow_bits});
   classes.extend(image.paths, {lights.size(), image.view.shadow_bits}, {});
   const SceneDelta delta = apply_edit(state_, edit, journal.file, journal.path.parent_path());
-  const StepChange change = find_change(rays, state_.scene(), delta, lights);
+  const StepChange change = find_change(before, state_.scene(), delta, lights);
   if (change.rays.lights_changed || change.touches_segments()) return {};  // not told from paths alone
-  rays.update(state_.scene(), delta);
+  const ColorScene rays(before.after(state_.scene(), delta), state_.scene());
   const PathSearch search{rays, image.paths, index, lights, image.view.shadow_bits, classes};
   ProgramTable programs;
   PathTasks tasks;

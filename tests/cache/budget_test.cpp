@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "image/render.h"
 #include "image/sampling.h"
+#include "trace/tree/pack.h"
 #include "random_changes.h"
 #include "region_checks.h"
 #include "run_program.h"

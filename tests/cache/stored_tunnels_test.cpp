@@ -242,8 +242,8 @@ TEST_F(StoredTunnelsTest, OfMoreSectionsThanTheTreesCanHaveAreRefusedBeforeTheyA
   const SceneState state = test_scene(TestScene::study, 90, 70);
   CacheContent content = content_with_tunnels(state, {1, 5}, {});
   TunnelSection section = content.around_tiles[0].front();
-  for (History history = 1U << 20; history < (1U << 20) + 2000000; ++history) {
-    section.history = history;
+  for (std::uint32_t number = 1U << 20; number < (1U << 20) + 2000000; ++number) {
+    section.history = History::of_number(number);
     content.around_tiles[0].push_back(section);
   }
   write_cache(cache_, content);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "edit/journal_walk.h"
 #include "look_fixture.h"
 #include "report/edit_hashes.h"
 #include "run_program.h"
@@ -157,8 +158,7 @@ TEST(Growth, values_between_are_no_longer_than_a_matrix) {
 TEST(Growth, numbers_that_replace_one_another_merge_into_the_last) {
   const Journal journal = parsed({range_wedge("/lights/Bulb/intensity", 5), range_wedge("/lights/Bulb/range", 3)});
   MergedEdits edits;
-  for (const JournalStep& step : journal.steps)
-    for (Edit edit : frames_of(step)) edits.add(std::move(edit));
+  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) { edits.add(event.edit()); });
   const std::vector<Edit> merged = edits.take();
   ASSERT_EQ(merged.size(), 1U);
   ASSERT_EQ(merged[0].size(), 2U);

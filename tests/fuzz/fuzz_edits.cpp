@@ -2,7 +2,7 @@
 // scratch gives; one that is refused, or only rehearsed, leaves everything as it was.
 #include "edit/apply.h"
 #include "edit/growth.h"
-#include "edit/journal.h"
+#include "edit/journal_walk.h"
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
 #include "gltf_writer.h"
@@ -53,18 +53,11 @@ bool apply(SceneState& state, const Edit& edit, const std::string& file) {
   return is_accepted;
 }
 
-std::size_t frame_count(const Journal& journal) {
-  std::size_t count = 0;
-  for (const JournalStep& step : journal.steps) count += frames_of(step).size();
-  return count;
-}
-
 void play(SceneState& state, const Journal& journal) {
-  for (const JournalStep& step : journal.steps) {
-    for (std::size_t i = 0; i < step.drag.size(); ++i) check_drag_scope(state, step, i, journal.file);
-    for (const Edit& edit : frames_of(step))
-      expect(apply(state, edit, journal.file), "an edit of a journal that was found to be right is refused");
-  }
+  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+    if (event.kind == EventKind::drag) check_drag_scope(state, *event.step, event.frame, journal.file);
+    expect(apply(state, event.edit(), journal.file), "an edit of a journal that was found to be right is refused");
+  });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "image/path_classes.h"
 #include "image/sampling.h"
+#include "trace/tree/shadow_segment.h"
 
 namespace relook {
 namespace {
@@ -30,7 +31,7 @@ class TreeCheck {
     std::vector<History> histories;
     for (std::uint32_t i = root_; i < block_.nodes.size(); ++i) {
       const RayNode& node = block_.nodes[i];
-      histories.push_back(i == root_ ? kPrimary : child_of(histories[node.parent - root_], node.ray.branch));
+      histories.push_back(i == root_ ? History::primary() : histories[node.parent - root_].child(node.ray.branch));
       if (!has_ray(node, histories.back())) return false;
       ++segments;
       for (std::size_t light = 0; !node.object.is_none() && light < scene_.light_order.size(); ++light) {
@@ -50,10 +51,10 @@ class TreeCheck {
   }
   [[nodiscard]] bool has_ray(const RayNode& node, History history) const {
     const TunnelSection* own = section(history);
-    const TunnelSection* above = section(parent_of(history));
+    const TunnelSection* above = section(history.parent());
     if (own == nullptr || above == nullptr) return false;
     Box origins = above->points;
-    if (is_folded(history)) origins.extendBy(own->points);
+    if (history.is_folded()) origins.extendBy(own->points);
     const bool missed = node.object.is_none();
     for (const float t : {0.0F, 0.3F, 0.7F, 1.0F}) {
       const float start = node.ray.travelled;  // of a ray that goes straight on
@@ -67,8 +68,8 @@ class TreeCheck {
     const TunnelSection* own = section(history);
     const LightEnd end = light_ends(scene_)[light];
     const ShadowSegment segment = shadow_segment(node.point, scene_.light(scene_.light_order[light]));
-    const std::uint32_t lights = state == ShadowState::blocked ? own->blocked : own->open;
-    if ((lights & light_bit(light)) == 0) return false;
+    const LightSet lights = state == ShadowState::blocked ? own->blocked : own->open;
+    if (!lights.has(light)) return false;
     const Box to = end.directional ? extruded(own->points, end.end, 50).to : end.end;
     for (const float t : {0.0F, 0.4F, 1.0F})
       if (!is_inside(own->points, to, segment.origin + segment.direction * (end.directional ? 50 * t : t)))

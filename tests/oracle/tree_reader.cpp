@@ -1,7 +1,5 @@
 #include "tree_reader.h"
 
-#include "trace/tree/path_cursor.h"
-
 namespace relook {
 namespace {
 
@@ -15,7 +13,7 @@ struct Reader {
   TreeNode node() {
     TreeNode node;
     node.object = words[word++];
-    if (node.object == PathTable::kMissWord) {
+    if (node.object == 0xFFFFFFFFU) {
       node.missed = true;
       return node;
     }
@@ -35,7 +33,7 @@ struct Reader {
         light.filters.push_back({words[word++], hits[hit++]});
     }
     for (std::uint32_t branch = 0; branch < kBranches; ++branch)
-      if ((branches_of(node.flags) >> branch & 1U) != 0)
+      if ((node.flags >> (branch < 4 ? branch : branch + 1) & 1U) != 0)
         node.children.push_back({static_cast<Branch>(branch), this->node()});
     return node;
   }

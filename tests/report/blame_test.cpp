@@ -8,6 +8,7 @@
 #include <set>
 
 #include "cache/cache.h"
+#include "edit/journal_walk.h"
 #include "image/render.h"
 #include "replay/replay.h"
 #include "report/pixel_history.h"
@@ -36,11 +37,10 @@ std::vector<std::vector<Rgba>> frames_of_replay(const Journal& journal, const Vi
   Image image = preprocess(state.scene(), view, stats);
   Replayer replayer(std::move(state), std::move(image));
   std::vector<std::vector<Rgba>> frames{replayer.image().frame.pixels};
-  for (const JournalStep& step : journal.steps)
-    for (const Edit& edit : frames_of(step)) {
-      (void)replayer.step(edit, journal.file, journal.path.parent_path());
-      frames.push_back(replayer.image().frame.pixels);
-    }
+  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+    (void)replayer.step(event.edit(), journal.file, journal.path.parent_path());
+    frames.push_back(replayer.image().frame.pixels);
+  });
   return frames;
 }
 
@@ -66,14 +66,13 @@ void expect_history(const Journal& journal, const ViewOptions& view, std::size_t
     PixelHistory history(spheres(), view, x, y);
     EXPECT_TRUE(same_bits(history.color(), frames[0][pixel]));
     std::size_t k = 0;
-    for (const JournalStep& step : journal.steps)
-      for (const Edit& edit : frames_of(step)) {
-        ++k;
-        const PixelStep result = history.step(edit, journal.file, journal.path.parent_path());
-        EXPECT_TRUE(same_bits(result.after, frames[k][pixel])) << step.name;
-        EXPECT_EQ(result.is_changed, !same_bits(frames[k - 1][pixel], frames[k][pixel])) << step.name;
-        EXPECT_EQ(result.causes.empty(), !result.is_changed) << step.name;
-      }
+    follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+      ++k;
+      const PixelStep result = history.step(event.edit(), journal.file, journal.path.parent_path());
+      EXPECT_TRUE(same_bits(result.after, frames[k][pixel])) << event.step->name;
+      EXPECT_EQ(result.is_changed, !same_bits(frames[k - 1][pixel], frames[k][pixel])) << event.step->name;
+      EXPECT_EQ(result.causes.empty(), !result.is_changed) << event.step->name;
+    });
   }
 }
 
@@ -100,10 +99,10 @@ std::set<std::string> all_causes(const Journal& journal) {
   for (const std::size_t pixel : changed_pixels(frames_of_replay(journal, {}), 12)) {
     PixelHistory history(spheres(), {}, static_cast<std::uint32_t>(pixel % kWidth),
                          static_cast<std::uint32_t>(pixel / kWidth));
-    for (const JournalStep& step : journal.steps)
-      for (const Edit& edit : frames_of(step))
-        for (const std::string& cause : history.step(edit, journal.file, journal.path.parent_path()).causes)
-          causes.insert(cause);
+    follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
+      const PixelStep result = history.step(event.edit(), journal.file, journal.path.parent_path());
+      causes.insert(result.causes.begin(), result.causes.end());
+    });
   }
   return causes;
 }

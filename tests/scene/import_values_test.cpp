@@ -57,13 +57,13 @@ class ImportValues : public testing::Test {
 
 /// A number of glTF with a place for a value in a file.
 struct Number {
-  const Field* field;
+  const SchemaField* field;
   std::string pointer;  // below the entity
 };
 
 /// All numbers below a schema but relook's own.
 void collect_numbers(const Schema& schema, const std::string& at, std::vector<Number>& numbers) {
-  for (const Field& field : schema.fields) {
+  for (const SchemaField& field : schema.fields) {
     if (field.key == "extras") continue;
     const std::string pointer = at + "/" + std::string(field.key);
     if (field.kind == FieldKind::number || field.kind == FieldKind::reals) numbers.push_back({&field, pointer});
@@ -140,7 +140,7 @@ TEST_F(ImportValues, one_float_beyond_a_bound_of_gltf_is_the_bound_with_a_warnin
   std::size_t tried = 0;
   for (const Home& home : homes())
     for (const Number& number : numbers_of(home)) {
-      const Field& field = *number.field;
+      const SchemaField& field = *number.field;
       std::vector<std::pair<double, double>> beyond;  // value, bound
       if (field.high < kCeiling) beyond.emplace_back(step_up(step_up(field.high)), field.high);
       if (std::abs(field.low) < kCeiling && field.low != kAboveZero)
@@ -167,7 +167,7 @@ TEST_F(ImportValues, a_value_far_beyond_is_refused_where_it_is_used_and_ignored_
   std::size_t tried = 0;
   for (const Home& home : homes())
     for (const Number& number : numbers_of(home)) {
-      const Field& field = *number.field;
+      const SchemaField& field = *number.field;
       std::vector<double> beyond;
       if (field.high < kCeiling) beyond.push_back(field.high + 1.5);
       if (std::abs(field.low) < kCeiling) beyond.push_back(field.low - 1.5);

@@ -44,7 +44,7 @@ SceneState heap_scene(std::mt19937& engine) {
   return scene.state();
 }
 
-/// A scene whose objects are edited one by one, in place, as RayScene::update() does it.
+/// A scene whose objects are edited one by one, in place.
 class Stage {
  public:
   Stage(const SceneState& state, std::mt19937& engine)

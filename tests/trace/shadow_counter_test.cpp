@@ -12,6 +12,7 @@
 #include "replay/replay.h"
 #include "test_scenes.h"
 #include "trace/tree/grow.h"
+#include "trace/tree/shadow_segment.h"
 #include "tree_reader.h"
 
 namespace relook {
@@ -182,9 +183,8 @@ struct OracleCounts {
   std::set<std::vector<std::uint32_t>> entries;
 };
 
-void compare_links(const RayScene& rays, const TreeBlock& block, const std::vector<WorldTriangle>& triangles,
+void compare_links(const Scene& scene, const TreeBlock& block, const std::vector<WorldTriangle>& triangles,
                    std::uint32_t bits, OracleCounts& counts) {
-  const Scene& scene = rays.scene();
   std::vector<BruteCrossing> crossings;
   for (const RayNode& node : block.nodes) {
     for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light) {
@@ -230,7 +230,7 @@ TEST(ShadowCounter, stored_counters_are_those_of_a_loop_over_all_objects) {
       GrowCounters counters;
       TreeBlock block;
       expand_tree(grow, primaries.ray(rect, sample), sample, stored, block, counters);
-      compare_links(rays, block, triangles, bits, counts);
+      compare_links(state.scene(), block, triangles, bits, counts);
       if (HasFatalFailure()) return;
     }
     EXPECT_LT(counts.unclear, counts.compared / 10);

@@ -9,8 +9,8 @@ namespace {
 
 /// What in a node may change, beside its own parameters.
 struct ChangingBelow {
-  std::uint64_t tints = 0;    // see tint_bit()
-  std::uint8_t children = 0;  // bit per Branch
+  WideLightSet tints;
+  BranchSet children;
 };
 
 class Compressor {
@@ -44,24 +44,24 @@ class Compressor {
     below_.resize(block_.nodes.size());
     for (std::size_t n = block_.nodes.size(); n-- > 0;) {
       below_[n] = changing_below(block_.nodes[n]);
-      node_changes_[n] = reached_[node_program_[n]] || below_[n].children != 0 || below_[n].tints != 0;
+      node_changes_[n] = reached_[node_program_[n]] || !below_[n].children.empty() || !below_[n].tints.empty();
     }
   }
   [[nodiscard]] ChangingBelow changing_below(const RayNode& node) const {
     ChangingBelow below;
     for (std::size_t b = 0; b < kBranches; ++b)
       if (node.child[b] != kNoNode && node_changes_[node.child[b]])
-        below.children = static_cast<std::uint8_t>(below.children | 1U << b);
+        below.children.add(static_cast<Branch>(b));
     if (node.object.is_none() || block_.filters.empty()) return below;
     for_each_tint(node, [&](std::uint32_t order, const LightLink& link) {
       for (std::uint32_t f = link.first; f < link.first + link.filters; ++f)
-        if (filter_changes_[f]) below.tints |= tint_bit(order);
+        if (filter_changes_[f]) below.tints.add(order);
     });
     return below;
   }
   template <class Visit>
   void for_each_tint(const RayNode& node, const Visit& visit) const {
-    const std::size_t lights = c_.scene.scene().light_order.size();
+    const std::size_t lights = c_.scene.light_order().size();
     for (std::uint32_t order = 0; order < lights; ++order)
       if (const LightLink& link = block_.lights[node.first_light + order]; link.state == ShadowState::filtered)
         visit(order, link);
@@ -79,9 +79,9 @@ class Compressor {
       if (node_changes_[n] && node_slot_[n] == kNoNode) node_slot_[n] = result_.nodes++;
     // The filters of one segment stand together in the block, and so do their slots.
     for (std::size_t n = 0; n < block_.nodes.size(); ++n)
-      if (below_[n].tints != 0)
+      if (!below_[n].tints.empty())
         for_each_tint(block_.nodes[n], [&](std::uint32_t order, const LightLink& link) {
-          if ((below_[n].tints & tint_bit(order)) == 0) return;
+          if (!below_[n].tints.has(order)) return;
           for (std::uint32_t f = link.first; f < link.first + link.filters; ++f) filter_slot_[f] = result_.filters++;
         });
   }
@@ -154,8 +154,8 @@ class Compressor {
   /// Nodes of one batch have all of this in common.
   struct BatchKey {
     std::uint32_t generation = 0, program = 0;
-    std::uint8_t children = 0;
-    std::uint64_t tints = 0;
+    BranchSet children;
+    WideLightSet tints;
     bool operator==(const BatchKey&) const = default;
     bool operator<(const BatchKey& other) const {  // the deepest first
       return std::tuple(other.generation, program, children, tints) <
@@ -177,20 +177,20 @@ class Compressor {
       CompressedBatch batch = new_batch(key.program, {key.tints, key.children});
       for (const std::uint32_t n : indices) batch.out.push_back(node_slot_[n]);
       note_children(batch, key.children, indices);
-      if (key.tints != 0) note_tints(batch, key.tints, indices);
+      if (!key.tints.empty()) note_tints(batch, key.tints, indices);
       keep(std::move(batch), false, indices);
     }
   }
-  void note_children(CompressedBatch& batch, std::uint8_t children, const std::vector<std::uint32_t>& indices) const {
+  void note_children(CompressedBatch& batch, BranchSet children, const std::vector<std::uint32_t>& indices) const {
     for (std::size_t b = 0; b < kBranches; ++b) {
-      if ((children >> b & 1U) == 0) continue;
+      if (!children.has(static_cast<Branch>(b))) continue;
       for (const std::uint32_t n : indices) batch.child[b].push_back(node_slot_[block_.nodes[n].child[b]]);
     }
   }
-  void note_tints(CompressedBatch& batch, std::uint64_t tints, const std::vector<std::uint32_t>& indices) const {
-    const std::size_t lights = c_.scene.scene().light_order.size();
+  void note_tints(CompressedBatch& batch, WideLightSet tints, const std::vector<std::uint32_t>& indices) const {
+    const std::size_t lights = c_.scene.light_order().size();
     for (std::uint32_t order = 0; order < lights; ++order) {
-      if ((tints & tint_bit(order)) == 0) continue;
+      if (!tints.has(order)) continue;
       auto& [light, links] = batch.tints.emplace_back();
       light = order;
       for (const std::uint32_t n : indices) {

@@ -8,7 +8,7 @@ class NodePrograms;
 
 /// What compressing needs beside the trees; `memory` is working memory.
 struct CompressContext {
-  const RayScene& scene;
+  const ColorScene& scene;
   NodePrograms& programs;
   SplitTable& splits;
   ColorMemory& memory;

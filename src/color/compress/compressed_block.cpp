@@ -13,7 +13,7 @@ class CompressedLanes {
 
   void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&, Scratch& scratch) const {
     if (step.op == Op::column) {
-      const CompressedBatch::Stored& stored = batch_.columns[step.payload];
+      const CompressedBatch::Stored& stored = batch_.columns[step.payload.number()];
       if (stored.first == CompressedBatch::kShared)
         std::fill_n(scratch.own(step.out), whole_vectors(lanes), stored.shared);
       else
@@ -32,10 +32,10 @@ class CompressedLanes {
     return column->lanes.data();
   }
   void load_color(const Kernel::Step& step, std::size_t first, std::size_t lanes, Scratch& scratch) const {
-    const int channel = static_cast<int>(input_axis(step.payload));
-    const std::uint32_t which = input_which(step.payload);
+    const int channel = static_cast<int>(step.payload.axis());
+    const std::uint32_t which = step.payload.which();
     float* out = scratch.own(step.out);
-    if (input_of(step.payload) == Input::child) {
+    if (step.payload.input() == Input::child) {
       const std::uint32_t* slots = batch_.child[which].data() + first;
       for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = colors_.nodes[slots[lane]][channel];
       return;

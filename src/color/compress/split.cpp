@@ -40,22 +40,22 @@ class Splitter {
  private:
   [[nodiscard]] bool is_changing(Value v) const {
     const Instruction& i = code_[v];
-    const auto slot = static_cast<Slot>(i.payload & 0xFFU);
+    const auto slot = i.payload.slot();
     switch (i.op) {
       case Op::material_field:
-        return (leaves_.fields & mask_of(static_cast<Field>(i.payload & 0xFFU))) != 0;
+        return (leaves_.fields & mask_of(i.payload.field())) != 0;
       case Op::slot_color:
         return (leaves_.fields & color_mask_of(slot)) != 0;
       case Op::light_field:
-        return is_color(static_cast<LightField>(i.payload & 0xFFU)) && i.payload >> 8 < changing_lights_.size() &&
-               changing_lights_[i.payload >> 8];
+        return is_color(i.payload.light_field()) && i.payload.light().index() < changing_lights_.size() &&
+               changing_lights_[i.payload.light().index()];
       case Op::ambient:
         return leaves_.ambient;
       case Op::environment:
         return leaves_.environment;
       case Op::input:
-        if (input_of(i.payload) == Input::child) return (leaves_.children >> input_which(i.payload) & 1U) != 0;
-        return input_of(i.payload) == Input::tint && (leaves_.tints & tint_bit(input_which(i.payload))) != 0;
+        if (i.payload.input() == Input::child) return leaves_.children.has(static_cast<Branch>(i.payload.which()));
+        return i.payload.input() == Input::tint && leaves_.tints.has(i.payload.which());
       case Op::texture:
       case Op::procedural_weight:
         if ((leaves_.fields & mask_of(slot)) != 0) return true;
@@ -127,7 +127,7 @@ class Splitter {
   /// The program from the columns on.
   Kernel residual(const std::vector<Value>& columns) const {
     Code code = code_;
-    for (std::size_t k = 0; k < columns.size(); ++k) code[columns[k]] = {Op::column, static_cast<std::uint32_t>(k), {}};
+    for (std::size_t k = 0; k < columns.size(); ++k) code[columns[k]] = {Op::column, Payload::number(static_cast<std::uint32_t>(k)), {}};
     return make_kernel(code, {program_.result.begin(), program_.result.end()});
   }
 
@@ -146,10 +146,10 @@ class Splitter {
     return read;
   }
   static void note(const Instruction& i, Dependencies& read) {
-    const auto slot = static_cast<Slot>(i.payload & 0xFFU);
+    const auto slot = i.payload.slot();
     switch (i.op) {
       case Op::material_field:
-        read.material |= mask_of(static_cast<Field>(i.payload & 0xFFU));
+        read.material |= mask_of(i.payload.field());
         break;
       case Op::slot_color:
         read.material |= color_mask_of(slot);
@@ -165,8 +165,8 @@ class Splitter {
         read.material |= kMappingMask;
         break;
       case Op::light_field:  // placement never changes while columns are kept
-        if (!is_color(static_cast<LightField>(i.payload & 0xFFU))) break;
-        read.lights.emplace_back(i.payload >> 8);
+        if (!is_color(i.payload.light_field())) break;
+        read.lights.push_back(i.payload.light());
         break;
       case Op::ambient:
         read.ambient = true;

@@ -2,10 +2,11 @@
 // one value a sample; a residual program keeps the chain from these leaves to the result. No operation is
 // re-associated, so the residual yields the program's bits.
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "color/expression/program.h"
+#include "trace/tree/branch.h"
+#include "trace/tree/light_set.h"
 
 namespace relook {
 
@@ -14,14 +15,10 @@ struct ChangingLeaves {
   FieldMask fields = 0;         // of the node's material, without kMappingMask: places of lookups cannot change
   std::vector<LightId> lights;  // their colour parameters
   bool ambient = false, environment = false;
-  std::uint8_t children = 0;  // bit per Branch: colours of child rays
-  std::uint64_t tints = 0;    // tint_bit() of lights whose filters' colours change
+  BranchSet children;  // colours of child rays
+  WideLightSet tints;  // lights whose filters' colours change
   auto operator<=>(const ChangingLeaves&) const = default;
 };
-/// A bit for a place in the light order; all from the 64th on share the last.
-[[nodiscard]] constexpr std::uint64_t tint_bit(std::uint32_t order) {
-  return std::uint64_t{1} << (order < 63 ? order : 63);
-}
 
 struct SplitProgram {
   Kernel constants;    // outputs: the columns

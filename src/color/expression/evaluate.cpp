@@ -21,7 +21,7 @@ void NodeBatch::load(const Kernel::Step& step, std::size_t first, std::size_t la
   }
 }
 
-void evaluate(const BoundProgram& bound, const RayScene& scene, const TreeBlock& block, bool are_filters,
+void evaluate(const BoundProgram& bound, const ColorScene& scene, const TreeBlock& block, bool are_filters,
               std::span<const std::uint32_t> indices, BlockColors& colors, Scratch& scratch) {
   const Parameters parameters{scene.scene(), bound.material};
   const NodeBatch batch{scene, block, colors, are_filters, indices};

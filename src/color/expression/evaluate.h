@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "color/color_scene.h"
 #include "color/expression/lanes.h"
 #include "color/expression/program.h"
-#include "trace/ray_scene.h"
 #include "trace/tree/tree_block.h"
 
 namespace relook {
@@ -38,7 +38,7 @@ struct BoundProgram {
 /// Nodes of a block (or filters, if `are_filters`) that share a program, as what a kernel runs over. The children and
 /// filters of the nodes must be there already, as far as the kernel reads them.
 struct NodeBatch {
-  const RayScene& scene;
+  const ColorScene& scene;
   const TreeBlock& block;
   const BlockColors& colors;
   bool are_filters = false;
@@ -49,7 +49,7 @@ struct NodeBatch {
 };
 
 /// Runs a program for nodes (or filters) `indices` of `block` and stores their colours.
-void evaluate(const BoundProgram& bound, const RayScene& scene, const TreeBlock& block, bool are_filters,
+void evaluate(const BoundProgram& bound, const ColorScene& scene, const TreeBlock& block, bool are_filters,
               std::span<const std::uint32_t> indices, BlockColors& colors, Scratch& scratch);
 
 }  // namespace relook

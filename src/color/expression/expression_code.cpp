@@ -107,7 +107,7 @@ Code fused(Code code, const std::vector<Value>& outputs) {
     for (unsigned k = 0; k < 2; ++k) {
       const Instruction product = code[code[i].operands[k]];
       if (product.op != Op::multiply || uses[code[i].operands[k]] != 1) continue;
-      code[i] = {Op::multiply_add, 0, {product.operands[0], product.operands[1], code[i].operands[1 - k], 0, 0}};
+      code[i] = {Op::multiply_add, {}, {product.operands[0], product.operands[1], code[i].operands[1 - k], 0, 0}};
       break;
     }
   }
@@ -158,7 +158,7 @@ Kernel make_kernel(const Code& whole_code, const std::vector<Value>& outputs) {
   for (std::size_t i = 0; i < code.size(); ++i) {
     if (last_use[i] != 0 && !is_uniform[i]) {
       if (code[i].op == Op::channel) {
-        place[i] = place[code[i].operands[0]] + code[i].payload;
+        place[i] = place[code[i].operands[0]] + code[i].payload.number();
       } else {
         place[i] = registers.take(result_count(code[i].op));
         kernel.varying.push_back(step_of(i));

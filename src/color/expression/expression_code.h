@@ -3,21 +3,24 @@
 // n-ary functions (paper 2.1).
 #pragma once
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
+
+#include "color/expression/field.h"
 
 namespace relook {
 
 enum class Op : std::uint8_t {
   // leaves
-  constant,        // payload: bits of a float
-  material_field,  // payload: Field | component << 8
-  slot_color,      // payload: Slot | component << 8: color1 (0..2) and color2 (3..5) of a procedural texture
-  light_field,     // payload: LightField | light index << 8
-  ambient,         // payload: component
-  environment,     // payload: component of color * intensity
-  input,           // payload: Input | detail << 8
-  column,          // payload: which stored column: a subexpression that has been evaluated before (paper 3.3)
+  constant,        // payload: its value
+  material_field,  // payload: Field, component
+  slot_color,      // payload: Slot, component: color1 (0..2) and color2 (3..5) of a procedural texture
+  light_field,     // payload: LightField, light
+  ambient,         // payload: number of the component
+  environment,     // payload: number of the component of color * intensity
+  input,           // payload: Input, axis, which
+  column,          // payload: number of a stored column: a subexpression that has been evaluated before (paper 3.3)
   // functions of one, two, three values
   sqrt,
   exp2,
@@ -38,7 +41,7 @@ enum class Op : std::uint8_t {
   tangent_frame,    // payload: slot; per-sample constants: tangent, bitangent
   texture,          // payload: slot; (x, y, z, area ratio, footprint) to RGBA
   environment_map,  // direction (x, y, z) to RGBA
-  channel,          // payload: which result of the lookup given as operand; result 0 is the lookup itself
+  channel,          // payload: number of a result of the lookup given as operand; result 0 is the lookup itself
 };
 
 /// Per-sample constants of a node, gathered from its hit.
@@ -46,26 +49,62 @@ enum class Input : std::uint8_t {
   position,
   normal,
   geometric,
-  view,          // these four: detail is the axis
-  vertex_color,  // detail: channel
+  view,          // these four by axis
+  vertex_color,  // by axis: channel
   footprint,
   length_inside,
-  child,         // detail: channel | branch << 4
-  child_length,  // detail: branch
-  tint,          // detail: channel | index in the light order << 4
-  reached,       // does that light reach the node, 1 or 0; detail: index in the light order << 4
+  child,         // by axis: channel; which: branch
+  child_length,  // which: branch
+  tint,          // by axis: channel; which: index in the light order
+  reached,       // does that light reach the node, 1 or 0; which: index in the light order
 };
-/// Parts of the payload of an `input` instruction.
-[[nodiscard]] constexpr Input input_of(std::uint32_t payload) { return static_cast<Input>(payload & 0xFFU); }
-[[nodiscard]] constexpr std::uint32_t input_axis(std::uint32_t payload) { return payload >> 8 & 15U; }
-[[nodiscard]] constexpr std::uint32_t input_which(std::uint32_t payload) { return payload >> 12; }
+
+/// What an instruction has beside its operands. Op says which of these it is.
+class Payload {
+ public:
+  constexpr Payload() = default;
+  [[nodiscard]] static constexpr Payload constant(float value) { return Payload(std::bit_cast<std::uint32_t>(value)); }
+  [[nodiscard]] static constexpr Payload number(std::uint32_t number) { return Payload(number); }
+  [[nodiscard]] static constexpr Payload of(Field field, std::uint32_t component) { return pair(field, component); }
+  [[nodiscard]] static constexpr Payload of(Slot slot, std::uint32_t component = 0) { return pair(slot, component); }
+  [[nodiscard]] static constexpr Payload of(LightField field, LightId light) { return pair(field, light.index()); }
+  [[nodiscard]] static constexpr Payload of(Input input, std::uint32_t axis, std::uint32_t which) {
+    return pair(input, axis | which << kAxisBits);
+  }
+
+  [[nodiscard]] constexpr float constant() const { return std::bit_cast<float>(word_); }
+  [[nodiscard]] constexpr std::uint32_t number() const { return word_; }
+  [[nodiscard]] constexpr Field field() const { return static_cast<Field>(low()); }
+  [[nodiscard]] constexpr Slot slot() const { return static_cast<Slot>(low()); }
+  [[nodiscard]] constexpr LightField light_field() const { return static_cast<LightField>(low()); }
+  [[nodiscard]] constexpr Input input() const { return static_cast<Input>(low()); }
+  [[nodiscard]] constexpr std::uint32_t component() const { return high(); }
+  [[nodiscard]] constexpr LightId light() const { return LightId(high()); }
+  [[nodiscard]] constexpr std::uint32_t axis() const { return high() & ((1U << kAxisBits) - 1U); }
+  [[nodiscard]] constexpr std::uint32_t which() const { return high() >> kAxisBits; }
+  /// All of it, to be hashed.
+  [[nodiscard]] constexpr std::uint32_t word() const { return word_; }
+  friend constexpr bool operator==(Payload, Payload) = default;
+
+ private:
+  static constexpr unsigned kLowBits = 8, kAxisBits = 4;
+  constexpr explicit Payload(std::uint32_t word) : word_(word) {}
+  template <class Low>
+  [[nodiscard]] static constexpr Payload pair(Low low, std::uint32_t high) {
+    return Payload(static_cast<std::uint32_t>(low) | high << kLowBits);
+  }
+  [[nodiscard]] constexpr std::uint32_t low() const { return word_ & ((1U << kLowBits) - 1U); }
+  [[nodiscard]] constexpr std::uint32_t high() const { return word_ >> kLowBits; }
+  std::uint32_t word_ = 0;
+};
+static_assert(sizeof(Payload) == sizeof(std::uint32_t));
 
 /// A value of an expression: an index into its code.
 using Value = std::uint32_t;
 
 struct Instruction {
   Op op = Op::constant;
-  std::uint32_t payload = 0;
+  Payload payload;
   std::array<Value, 5> operands{};
   bool operator==(const Instruction&) const = default;
 };
@@ -86,7 +125,7 @@ using Code = std::vector<Instruction>;
 struct Kernel {
   struct Step {
     Op op;
-    std::uint32_t payload;
+    Payload payload;
     std::uint32_t out;
     std::array<std::uint32_t, 5> in;
   };

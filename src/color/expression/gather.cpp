@@ -23,10 +23,10 @@ void from_nodes(const Gathering& from, float* out, const Read& read) {
 
 }  // namespace
 
-void gather(std::uint32_t payload, const Gathering& from, const BlockColors& colors, float* out) {
-  const int axis = static_cast<int>(input_axis(payload));
-  const std::uint32_t which = input_which(payload);
-  switch (input_of(payload)) {
+void gather(Payload payload, const Gathering& from, const BlockColors& colors, float* out) {
+  const int axis = static_cast<int>(payload.axis());
+  const std::uint32_t which = payload.which();
+  switch (payload.input()) {
     case Input::position:
       return for_each_lane(from, [&](std::size_t lane, const auto& hit) { out[lane] = hit.point.position[axis]; });
     case Input::normal:
@@ -49,7 +49,7 @@ void gather(std::uint32_t payload, const Gathering& from, const BlockColors& col
       return from_nodes(from, out, [&](const RayNode& node) { return colors.nodes[node.child[which]][axis]; });
     case Input::child_length:
       return from_nodes(from, out, [&](const RayNode& node) {
-        const RayNode& child = from.block.nodes[node.child[static_cast<std::size_t>(axis)]];
+        const RayNode& child = from.block.nodes[node.child[which]];
         return child.length - child.ray.travelled;
       });
     case Input::tint:

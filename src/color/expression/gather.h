@@ -15,7 +15,7 @@ struct Gathering {
 };
 
 /// Fills out[lane] with an input.
-void gather(std::uint32_t payload, const Gathering& from, const BlockColors& colors, float* out);
+void gather(Payload payload, const Gathering& from, const BlockColors& colors, float* out);
 /// Op::coordinates: four columns.
 void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out);
 /// Op::tangent_frame: six columns.

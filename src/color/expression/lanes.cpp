@@ -116,20 +116,20 @@ const Kernel::Step* run_steps(const Kernel::Step* step, const Kernel::Step* end,
 
 float parameter_value(const Kernel::Step& step, const Parameters& parameters) {
   const Scene& scene = parameters.scene;
-  const std::uint32_t low = step.payload & 0xFFU, high = step.payload >> 8;
+  const Payload payload = step.payload;
   switch (step.op) {
     case Op::constant:
-      return std::bit_cast<float>(step.payload);
+      return payload.constant();
     case Op::material_field:
-      return field_value(scene.material(parameters.material), static_cast<Field>(low), high);
+      return field_value(scene.material(parameters.material), payload.field(), payload.component());
     case Op::slot_color:
-      return slot_color(parameters.slot(step), high);
+      return slot_color(parameters.slot(step), payload.component());
     case Op::light_field:
-      return field_value(scene.light(LightId(high)), static_cast<LightField>(low));
+      return field_value(scene.light(payload.light()), payload.light_field());
     case Op::ambient:
-      return scene.ambient[static_cast<int>(low)];
+      return scene.ambient[static_cast<int>(payload.number())];
     case Op::environment:
-      return scene.environment.color[static_cast<int>(low)] * scene.environment.intensity;
+      return scene.environment.color[static_cast<int>(payload.number())] * scene.environment.intensity;
     default:
       return 0;
   }

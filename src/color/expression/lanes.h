@@ -48,7 +48,7 @@ struct Parameters {
   const Scene& scene;
   MaterialId material;  // none for the environment
   [[nodiscard]] const TextureSlot& slot(const Kernel::Step& step) const {
-    return scene.material(material).slot(static_cast<Slot>(step.payload & 0xFFU));
+    return scene.material(material).slot(step.payload.slot());
   }
 };
 [[nodiscard]] float parameter_value(const Kernel::Step& step, const Parameters& parameters);

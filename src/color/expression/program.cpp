@@ -65,48 +65,48 @@ const MaterialStructure& ExpressionBuilder::note(FieldMask mask) {
 
 bool ExpressionBuilder::is_constant(Value value, float* number) const {
   if (code_[value].op != Op::constant) return false;
-  *number = std::bit_cast<float>(code_[value].payload);
+  *number = code_[value].payload.constant();
   return true;
 }
 
-Value ExpressionBuilder::constant(float value) { return emit({Op::constant, std::bit_cast<std::uint32_t>(value), {}}); }
+Value ExpressionBuilder::constant(float value) { return emit({Op::constant, Payload::constant(value), {}}); }
 
 Value ExpressionBuilder::field(Field field, unsigned component) {
   static_cast<void>(note(mask_of(field)));
-  return emit({Op::material_field, static_cast<std::uint32_t>(field) | component << 8, {}});
+  return emit({Op::material_field, Payload::of(field, component), {}});
 }
 
 Value ExpressionBuilder::light(LightId light, LightField field) {
   auto& lights = dependencies_.lights;
   if (lights.empty() || lights.back() != light) lights.push_back(light);  // a model takes one lamp after the other
-  return emit({Op::light_field, static_cast<std::uint32_t>(field) | light.index() << 8, {}});
+  return emit({Op::light_field, Payload::of(field, light), {}});
 }
 
 Value ExpressionBuilder::ambient(unsigned component) {
   dependencies_.ambient = true;
-  return emit({Op::ambient, component, {}});
+  return emit({Op::ambient, Payload::number(component), {}});
 }
 
 Value ExpressionBuilder::environment(unsigned component) {
   dependencies_.environment = true;
-  return emit({Op::environment, component, {}});
+  return emit({Op::environment, Payload::number(component), {}});
 }
 
-Value ExpressionBuilder::input(Input input, unsigned detail) {
-  return emit({Op::input, static_cast<std::uint32_t>(input) | detail << 8, {}});
+Value ExpressionBuilder::input(Input input, unsigned axis, std::uint32_t which) {
+  return emit({Op::input, Payload::of(input, axis, which), {}});
 }
 
 Value ExpressionBuilder::apply(Op op, Value a, Value b, Value c) {
   float x = 0, y = 0;
   if (operand_count(op) == 2 && op != Op::sheen_albedo && is_constant(a, &x) && is_constant(b, &y))
     return constant(folded(op, x, y));
-  return emit({op, 0, {a, b, c, 0, 0}});
+  return emit({op, {}, {a, b, c, 0, 0}});
 }
 
 Instruction ExpressionBuilder::lookup_at(Op op, Slot slot) {
   static_cast<void>(note(mask_of(slot) | kMappingMask));
-  const Value at = emit({Op::coordinates, static_cast<std::uint32_t>(slot), {}});
-  Instruction lookup{op, static_cast<std::uint32_t>(slot), {}};
+  const Value at = emit({Op::coordinates, Payload::of(slot), {}});
+  Instruction lookup{op, Payload::of(slot), {}};
   for (unsigned k = 0; k < 4; ++k) lookup.operands[k] = channel(at, k);
   return lookup;
 }
@@ -114,9 +114,7 @@ Instruction ExpressionBuilder::lookup_at(Op op, Slot slot) {
 Value ExpressionBuilder::procedural_channel(Slot slot, unsigned channel) {
   if (channel == 3) return constant(1);
   static_cast<void>(note(color_mask_of(slot)));
-  const auto color = [&](unsigned component) {
-    return emit({Op::slot_color, static_cast<std::uint32_t>(slot) | component << 8, {}});
-  };
+  const auto color = [&](unsigned component) { return emit({Op::slot_color, Payload::of(slot, component), {}}); };
   const Value weight = emit(lookup_at(Op::procedural_weight, slot));
   const Value rest = apply(Op::subtract, constant(1), weight);
   return apply(Op::add, apply(Op::multiply, color(channel), rest), apply(Op::multiply, color(channel + 3), weight));
@@ -131,17 +129,17 @@ Value ExpressionBuilder::texel(Slot slot, unsigned channel) {
 
 Value ExpressionBuilder::tangent_frame(Slot slot) {
   static_cast<void>(note(mask_of(slot) | kMappingMask));
-  return emit({Op::tangent_frame, static_cast<std::uint32_t>(slot), {}});
+  return emit({Op::tangent_frame, Payload::of(slot), {}});
 }
 
 Value ExpressionBuilder::environment_map(Value x, Value y, Value z) {
   dependencies_.environment = true;
-  return emit({Op::environment_map, 0, {x, y, z, 0, 0}});
+  return emit({Op::environment_map, {}, {x, y, z, 0, 0}});
 }
 
 Value ExpressionBuilder::channel(Value lookup, unsigned channel) {
   require(is_lookup(code_[lookup].op), "channel of a lookup");
-  return channel == 0 ? lookup : emit({Op::channel, channel, {lookup, 0, 0, 0, 0}});
+  return channel == 0 ? lookup : emit({Op::channel, Payload::number(channel), {lookup, 0, 0, 0, 0}});
 }
 
 ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result) {

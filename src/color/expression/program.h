@@ -14,7 +14,7 @@ namespace relook {
 
 struct InstructionHash {
   std::size_t operator()(const Instruction& instruction) const {
-    std::uint64_t hash = static_cast<std::uint64_t>(instruction.op) << 32 | instruction.payload;
+    std::uint64_t hash = static_cast<std::uint64_t>(instruction.op) << 32 | instruction.payload.word();
     for (Value operand : instruction.operands) hash = (hash ^ operand) * 0x9E3779B97F4A7C15ULL;
     return hash ^ (hash >> 29);
   }
@@ -53,7 +53,7 @@ class ExpressionBuilder {
   [[nodiscard]] Value light(LightId light, LightField field);
   [[nodiscard]] Value ambient(unsigned component);
   [[nodiscard]] Value environment(unsigned component);
-  [[nodiscard]] Value input(Input input, unsigned detail = 0);
+  [[nodiscard]] Value input(Input input, unsigned axis = 0, std::uint32_t which = 0);
   [[nodiscard]] Value apply(Op op, Value a, Value b = 0, Value c = 0);
   /// One channel of what a texture slot holds. Requires has_texture(slot).
   [[nodiscard]] Value texel(Slot slot, unsigned channel);

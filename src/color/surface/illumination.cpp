@@ -95,7 +95,7 @@ std::array<Value, 4> environment_expression(SurfaceTerms& terms) {
 NodeKey restricted(NodeKey key, const ColorPart& part) {
   key.aspect = part.aspect;
   key.sources &= part.sources;
-  key.children &= part.branches;
+  key.children = key.children & part.branches;
   if (!part.all_lamps) std::erase_if(key.lights, [&](const VisibleLight& light) { return light.light != part.lamp; });
   return key;
 }

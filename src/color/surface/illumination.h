@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "color/expression/program.h"
-#include "trace/tree/ray_path.h"
+#include "trace/tree/branch.h"
 
 namespace relook {
 
@@ -36,7 +36,7 @@ struct NodeKey {
   bool inside = false;
   bool vertex_colors = false;
   bool interface_only = false;  // the inner side of a volume
-  std::uint8_t children = 0;    // bit per Branch
+  BranchSet children;
   Aspect aspect = Aspect::color;
   std::uint8_t sources = kAllSources;  // that count
   std::vector<VisibleLight> lights;
@@ -47,7 +47,7 @@ struct NodeKey {
 struct ColorPart {
   Aspect aspect = Aspect::color;
   std::uint8_t sources = kAllSources;
-  std::uint8_t branches = kAllBranches;  // bit per Branch
+  BranchSet branches = BranchSet::all();
   bool all_lamps = true;
   LightId lamp{};  // unless all: the only one, or none
 };

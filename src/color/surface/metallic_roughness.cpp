@@ -179,7 +179,7 @@ class BaseLayer {
     return t_.key().inside ? max(nv_, dot(t_.input3(Input::geometric), view_)) : nv_;
   }
   [[nodiscard]] Scalar child_length(Branch branch) {
-    return t_.input(Input::child_length, static_cast<unsigned>(branch));
+    return t_.input(Input::child_length, 0, static_cast<std::uint32_t>(branch));
   }
   [[nodiscard]] Triple dielectric_f0() {
     const Scalar ior = t_.ior();

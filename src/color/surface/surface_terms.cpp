@@ -85,7 +85,7 @@ Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
     }
     incidence.irradiance = incidence.irradiance * share;
   }
-  if (visible.filtered) incidence.irradiance = incidence.irradiance * input3(Input::tint, visible.order << 4);
+  if (visible.filtered) incidence.irradiance = incidence.irradiance * input3(Input::tint, visible.order);
   return incidence;
 }
 

@@ -19,9 +19,11 @@ class SurfaceTerms {
   [[nodiscard]] Triple grey(float x) { return {number(x), number(x), number(x)}; }
   [[nodiscard]] Scalar field(Field f, unsigned component = 0) { return {&b_, b_.field(f, component)}; }
   [[nodiscard]] Triple field3(Field f) { return {field(f, 0), field(f, 1), field(f, 2)}; }
-  [[nodiscard]] Scalar input(Input i, unsigned detail = 0) { return {&b_, b_.input(i, detail)}; }
-  [[nodiscard]] Triple input3(Input i, unsigned detail = 0) {
-    return {input(i, detail), input(i, detail | 1), input(i, detail | 2)};
+  [[nodiscard]] Scalar input(Input i, unsigned axis = 0, std::uint32_t which = 0) {
+    return {&b_, b_.input(i, axis, which)};
+  }
+  [[nodiscard]] Triple input3(Input i, std::uint32_t which = 0) {
+    return {input(i, 0, which), input(i, 1, which), input(i, 2, which)};
   }
   [[nodiscard]] bool has(Slot slot) { return b_.has_texture(slot); }
   [[nodiscard]] Scalar texel(Slot slot, unsigned channel) { return {&b_, b_.texel(slot, channel)}; }
@@ -48,21 +50,19 @@ class SurfaceTerms {
   /// A sum and what a light adds to it, where it reaches the node.
   [[nodiscard]] Triple with(const VisibleLight& light, const Triple& sum, const Triple& added) {
     if (!light.asked) return sum + added;
-    return if_positive(input(Input::reached, light.order << 4), sum + added, sum);
+    return if_positive(input(Input::reached, 0, light.order), sum + added, sum);
   }
-  [[nodiscard]] bool has_child(Branch branch) const {
-    return (key_.children >> static_cast<unsigned>(branch) & 1U) != 0;
-  }
-  [[nodiscard]] Triple child(Branch branch) { return input3(Input::child, static_cast<unsigned>(branch) << 4); }
+  [[nodiscard]] bool has_child(Branch branch) const { return key_.children.has(branch); }
+  [[nodiscard]] Triple child(Branch branch) { return input3(Input::child, static_cast<std::uint32_t>(branch)); }
   [[nodiscard]] Scalar child_alpha(Branch branch) {
-    return input(Input::child, 3U | static_cast<unsigned>(branch) << 4);
+    return input(Input::child, 3, static_cast<std::uint32_t>(branch));
   }
   /// From here on the expression is that of light of one channel.
   void take(Channel channel) { channel_ = channel; }
   [[nodiscard]] Scalar ior();
   /// The branch of the refracted ray: one of its own for each channel where colours part.
   [[nodiscard]] Branch refraction() const {
-    return (key_.children & kPartedBranches) != 0 ? refracted(channel_) : Branch::refraction;
+    return (key_.children & BranchSet::parted()).empty() ? Branch::refraction : refracted(channel_);
   }
   /// Beer's law over `length` metres inside the material.
   [[nodiscard]] Triple beer(Scalar length);

@@ -1,6 +1,8 @@
 #include "scene/compile/compile_material.h"
 
+#include <algorithm>
 #include <set>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "scene/look/look_schema.h"
@@ -9,52 +11,23 @@
 namespace relook {
 namespace {
 
-struct SlotPlace {
-  Slot slot;
-  std::string_view group, owner;  // keys on the way down, empty: none
-  std::string_view key;
-};
-constexpr std::array<SlotPlace, kSlotCount> kSlotPlaces{{
-    {Slot::base_color, "", "pbrMetallicRoughness", "baseColorTexture"},
-    {Slot::metallic_roughness, "", "pbrMetallicRoughness", "metallicRoughnessTexture"},
-    {Slot::normal, "", "", "normalTexture"},
-    {Slot::occlusion, "", "", "occlusionTexture"},
-    {Slot::emissive, "", "", "emissiveTexture"},
-    {Slot::transmission, "extensions", "KHR_materials_transmission", "transmissionTexture"},
-    {Slot::thickness, "extensions", "KHR_materials_volume", "thicknessTexture"},
-    {Slot::specular, "extensions", "KHR_materials_specular", "specularTexture"},
-    {Slot::specular_color, "extensions", "KHR_materials_specular", "specularColorTexture"},
-    {Slot::clearcoat, "extensions", "KHR_materials_clearcoat", "clearcoatTexture"},
-    {Slot::clearcoat_roughness, "extensions", "KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
-    {Slot::clearcoat_normal, "extensions", "KHR_materials_clearcoat", "clearcoatNormalTexture"},
-    {Slot::sheen_color, "extensions", "KHR_materials_sheen", "sheenColorTexture"},
-    {Slot::sheen_roughness, "extensions", "KHR_materials_sheen", "sheenRoughnessTexture"},
-    {Slot::anisotropy, "extensions", "KHR_materials_anisotropy", "anisotropyTexture"},
-    {Slot::iridescence, "extensions", "KHR_materials_iridescence", "iridescenceTexture"},
-    {Slot::iridescence_thickness, "extensions", "KHR_materials_iridescence", "iridescenceThicknessTexture"},
-}};
-
-const Json* slot_info(const Json& material, const SlotPlace& place) {
-  if (place.owner.empty()) return member_at(material, {place.key});
-  if (place.group.empty()) return member_at(material, {place.owner, place.key});
-  return member_at(material, {place.group, place.owner, place.key});
-}
-
-std::string pointer_to(const SlotPlace& place) {
-  std::string pointer;
-  for (std::string_view key : {place.group, place.owner, place.key})
-    if (!key.empty()) pointer += "/" + std::string(key);
-  return pointer;
+/// The value at a row's pointer below a material, or nullptr.
+const Json* value_at(const Json& material, std::string_view pointer) {
+  const Json* at = &material;
+  while (at != nullptr && !pointer.empty()) {
+    const std::size_t length = std::min(pointer.find('/'), pointer.size());
+    at = member_at(*at, {pointer.substr(0, length)});
+    pointer.remove_prefix(std::min(length + 1, pointer.size()));
+  }
+  return at;
 }
 
 /// The enumerator of `Enum` whose word in `words` is the value's.
-template <class Enum, std::size_t Count>
-Enum enum_of(const Json& value, const std::array<std::string_view, Count>& words) {
-  const auto& word = value.get_ref<const std::string&>();
-  std::size_t i = 0;
-  while (i < Count && words[i] != word) ++i;
-  require(i < Count, "a choice that passed the schema has an enumerator");
-  return static_cast<Enum>(i);
+template <class Enum>
+Enum enum_of(const Json& value, std::span<const std::string_view> words) {
+  const auto found = std::ranges::find(words, value.get_ref<const std::string&>());
+  require(found != words.end(), "a choice that passed the schema has an enumerator");
+  return static_cast<Enum>(found - words.begin());
 }
 
 Wrap wrap_of(const Json& sampler, std::string_view key) {
@@ -146,61 +119,15 @@ TextureSlot slot_of(const CompileContext& context, const Json& info, bool is_col
   return slot;
 }
 
-void set_core(const Json& value, Material& m) {
-  constexpr std::array<std::string_view, 3> kAlphaModes{"OPAQUE", "MASK", "BLEND"};
-  const Json& pbr = value["pbrMetallicRoughness"];
-  const Json& base = pbr["baseColorFactor"];
-  m.base_color = {float_of(base[0]), float_of(base[1]), float_of(base[2]), float_of(base[3])};
-  m.metallic = float_of(pbr["metallicFactor"]);
-  m.roughness = float_of(pbr["roughnessFactor"]);
-  m.emissive = color_of(value["emissiveFactor"]);
-  m.alpha_mode = enum_of<AlphaMode>(value["alphaMode"], kAlphaModes);
-  m.alpha_cutoff = float_of(value["alphaCutoff"]);
-  m.double_sided = value["doubleSided"].get<bool>();
-  if (value.contains("normalTexture")) m.normal_scale = float_of(value["normalTexture"]["scale"]);
-  if (value.contains("occlusionTexture")) m.occlusion_strength = float_of(value["occlusionTexture"]["strength"]);
+void set_member(const Json& value, const MaterialRow&, float& member) { member = float_of(value); }
+void set_member(const Json& value, const MaterialRow&, bool& member) { member = value.get<bool>(); }
+void set_member(const Json& value, const MaterialRow&, Color& member) { member = color_of(value); }
+void set_member(const Json& rgba, const MaterialRow&, Rgba& member) {
+  member = {float_of(rgba[0]), float_of(rgba[1]), float_of(rgba[2]), float_of(rgba[3])};
 }
-
-void set_extensions(const Json& extensions, Material& m) {
-  m.ior = float_of(extensions["KHR_materials_ior"]["ior"]);
-  m.dispersion = float_of(extensions["KHR_materials_dispersion"]["dispersion"]);
-  m.transmission = float_of(extensions["KHR_materials_transmission"]["transmissionFactor"]);
-  const Json& volume = extensions["KHR_materials_volume"];
-  m.thickness = float_of(volume["thicknessFactor"]);
-  if (volume.contains("attenuationDistance")) m.attenuation_distance = float_of(volume["attenuationDistance"]);
-  m.attenuation_color = color_of(volume["attenuationColor"]);
-  const Json& specular = extensions["KHR_materials_specular"];
-  m.specular = float_of(specular["specularFactor"]);
-  m.specular_color = color_of(specular["specularColorFactor"]);
-  const Json& coat = extensions["KHR_materials_clearcoat"];
-  m.clearcoat = float_of(coat["clearcoatFactor"]);
-  m.clearcoat_roughness = float_of(coat["clearcoatRoughnessFactor"]);
-  if (coat.contains("clearcoatNormalTexture"))
-    m.clearcoat_normal_scale = float_of(coat["clearcoatNormalTexture"]["scale"]);
-  const Json& sheen = extensions["KHR_materials_sheen"];
-  m.sheen_color = color_of(sheen["sheenColorFactor"]);
-  m.sheen_roughness = float_of(sheen["sheenRoughnessFactor"]);
-  const Json& anisotropy = extensions["KHR_materials_anisotropy"];
-  m.anisotropy = float_of(anisotropy["anisotropyStrength"]);
-  m.anisotropy_rotation = float_of(anisotropy["anisotropyRotation"]);
-  const Json& film = extensions["KHR_materials_iridescence"];
-  m.iridescence = float_of(film["iridescenceFactor"]);
-  m.iridescence_ior = float_of(film["iridescenceIor"]);
-  m.iridescence_minimum = float_of(film["iridescenceThicknessMinimum"]);
-  m.iridescence_maximum = float_of(film["iridescenceThicknessMaximum"]);
-  m.emissive_strength = float_of(extensions["KHR_materials_emissive_strength"]["emissiveStrength"]);
-}
-
-void set_relook(const Json& relook, Material& m) {
-  constexpr std::array<std::string_view, 3> kModels{"metallic-roughness", "blinn-phong", "unlit"};
-  m.model = enum_of<IlluminationModel>(relook["model"], kModels);
-  m.phong_ambient = color_of(relook["ambient"]);
-  m.phong_diffuse = color_of(relook["diffuse"]);
-  m.phong_specular = color_of(relook["specular"]);
-  m.shininess = float_of(relook["shininess"]);
-  m.reflection = float_of(relook["reflection"]);
-  m.refraction = float_of(relook["refraction"]);
-  m.transparency = float_of(relook["transparency"]);
+template <class Enum>
+void set_member(const Json& value, const MaterialRow& row, Enum& member) {
+  member = enum_of<Enum>(value, row.choices);
 }
 
 }  // namespace
@@ -219,24 +146,36 @@ const Json* member_at(const Json& value, std::initializer_list<std::string_view>
 Color color_of(const Json& rgb) { return {float_of(rgb[0]), float_of(rgb[1]), float_of(rgb[2])}; }
 float float_of(const Json& number) { return static_cast<float>(number.get<double>()) + 0.0F; }
 
+void set_fields(const Json& value, Material& material, std::span<const MaterialRow> rows) {
+  for (const MaterialRow& row : rows) {
+    const Json* given = value_at(value, row.pointer);
+    if (given == nullptr) continue;
+    std::visit(
+        [&](const auto member) {
+          if constexpr (!std::is_same_v<decltype(member), const Slot>) set_member(*given, row, material.*member);
+        },
+        row.member);
+  }
+}
+
 Material compile_material(const CompileContext& context, const std::string& name, const Json& value,
                           const std::string& pointer) {
   Material m;
   m.name = name;
-  set_core(value, m);
-  set_extensions(value["extensions"], m);
-  set_relook(value["extras"]["relook"], m);
-  for (const SlotPlace& place : kSlotPlaces)
-    if (const Json* info = slot_info(value, place))
-      m.slot(place.slot) = slot_of(context, *info, is_color_slot(place.slot), pointer + pointer_to(place));
+  set_fields(value, m);
+  for (const MaterialRow& row : material_rows()) {
+    const Json* info = row.slot() == nullptr ? nullptr : value_at(value, row.pointer);
+    if (info == nullptr) continue;
+    m.slot(*row.slot()) = slot_of(context, *info, row.has(MaterialRow::srgb), pointer + "/" + std::string(row.pointer));
+  }
   return m;
 }
 
 void decode_images(const LookDocument& document, PyramidStore& pyramids) {
   std::set<std::pair<std::string, bool>> wanted;
   for (const Json& material : document.look["materials"])
-    for (const SlotPlace& place : kSlotPlaces) {
-      const Json* info = slot_info(material, place);
+    for (const MaterialRow& row : material_rows()) {
+      const Json* info = row.slot() == nullptr ? nullptr : value_at(material, row.pointer);
       const Json* texture = info == nullptr ? nullptr : member_at(*info, {"index"});
       if (texture == nullptr || !texture->is_string()) continue;
       const Json* image = member_at(document.look, {"textures", texture->get_ref<const std::string&>(), "source"});
@@ -244,7 +183,7 @@ void decode_images(const LookDocument& document, PyramidStore& pyramids) {
       const Json* content =
           member_at(document.look, {"images", image->get_ref<const std::string&>(), "extras", "relook", "content"});
       if (content != nullptr && content->is_string())
-        wanted.emplace(content->get<std::string>(), is_color_slot(place.slot));
+        wanted.emplace(content->get<std::string>(), row.has(MaterialRow::srgb));
     }
   const std::vector<std::pair<std::string, bool>> list(wanted.begin(), wanted.end());
   parallel_for(list.size(), [&](std::size_t i) {

@@ -1,4 +1,4 @@
-// The look document (DESIGN: every editable property has one address): the glTF JSON with names for indices and every
+// The look document, in which every editable property has one address: the glTF JSON with names for indices and every
 // default filled in. Objects keyed by name: materials, textures, images, samplers, meshes, lights, nodes; plus `scene`.
 #pragma once
 #include <map>

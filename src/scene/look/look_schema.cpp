@@ -1,69 +1,70 @@
 // The tables of look_schema.h: glTF 2.0 and its extensions as far as relook supports them, and extras.relook. Bounds of
-// what glTF defines are glTF's.
+// what glTF defines are glTF's. That of materials is made of the rows of material_fields.h.
 #include "scene/look/look_schema.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace relook {
 namespace {
 
-constexpr double kMost = 1e6;         // of what is relook's own
+constexpr double kMost = kOwnCeiling;
 constexpr double kLargest = kCeiling;
 constexpr double kHuge = kUnbounded;  // where a float's infinity does no harm
 constexpr double kRightAngle = 1.5707963267948966;
 constexpr double kBelowPi = 3.1415926;
 
-Field number(std::string_view key, Json fallback, double low, double high) {
+SchemaField number(std::string_view key, Json fallback, double low, double high) {
   return {.key = key, .kind = FieldKind::number, .fallback = std::move(fallback), .low = low, .high = high};
 }
-Field integer(std::string_view key, Json fallback, double low, double high) {
+SchemaField integer(std::string_view key, Json fallback, double low, double high) {
   return {.key = key, .kind = FieldKind::integer, .fallback = std::move(fallback), .low = low, .high = high};
 }
-Field code(std::string_view key, Json fallback, std::vector<int> codes) {
+SchemaField code(std::string_view key, Json fallback, std::vector<int> codes) {
   return {.key = key, .kind = FieldKind::integer, .fallback = std::move(fallback), .codes = std::move(codes)};
 }
-Field boolean(std::string_view key, bool fallback) {
+SchemaField boolean(std::string_view key, bool fallback) {
   return {.key = key, .kind = FieldKind::boolean, .fallback = fallback};
 }
-Field text(std::string_view key) { return {.key = key, .kind = FieldKind::text, .fallback = {}}; }
-Field reals(std::string_view key, Json fallback, double low, double high) {
+SchemaField text(std::string_view key) { return {.key = key, .kind = FieldKind::text, .fallback = {}}; }
+SchemaField reals(std::string_view key, Json fallback, double low, double high) {
   const std::size_t count = fallback.size();
   return {
       .key = key, .kind = FieldKind::reals, .fallback = std::move(fallback), .low = low, .high = high, .count = count};
 }
 /// Any number of them.
-Field numbers(std::string_view key, double low, double high) {
+SchemaField numbers(std::string_view key, double low, double high) {
   return {.key = key, .kind = FieldKind::reals, .fallback = {}, .low = low, .high = high};
 }
-Field choice(std::string_view key, Json fallback, std::vector<std::string_view> choices, bool required = false) {
+SchemaField choice(std::string_view key, Json fallback, std::vector<std::string_view> choices, bool required = false) {
   return {.key = key,
           .kind = FieldKind::choice,
           .fallback = std::move(fallback),
           .choices = std::move(choices),
           .required = required};
 }
-Field name(std::string_view key, Target target, bool required = false) {
+SchemaField name(std::string_view key, Target target, bool required = false) {
   return {.key = key, .kind = FieldKind::name, .fallback = {}, .target = target, .required = required};
 }
-Field names(std::string_view key, Target target) {
+SchemaField names(std::string_view key, Target target) {
   return {.key = key, .kind = FieldKind::names, .fallback = {}, .target = target};
 }
-Field implied(std::string_view key, const Schema& inner) {
+SchemaField implied(std::string_view key, const Schema& inner) {
   return {.key = key, .kind = FieldKind::object, .fallback = {}, .inner = &inner, .implied = true};
 }
-Field optional(std::string_view key, const Schema& inner) {
+SchemaField optional(std::string_view key, const Schema& inner) {
   return {.key = key, .kind = FieldKind::object, .fallback = {}, .inner = &inner};
 }
-/// A field whose default documents omit, see Field::unwritten.
-Field unwritten(Field field) {
+/// A field whose default documents omit, see SchemaField::unwritten.
+SchemaField unwritten(SchemaField field) {
   field.unwritten = true;
   return field;
 }
-Field or_zero(Field field) {
+SchemaField or_zero(SchemaField field) {
   field.zero_too = true;
   return field;
 }
-Field list(std::string_view key, const Schema& inner) {
+SchemaField list(std::string_view key, const Schema& inner) {
   return {.key = key, .kind = FieldKind::list, .fallback = {}, .inner = &inner};
 }
 
@@ -78,10 +79,10 @@ const Schema& mapping_schema() {
   return mapping;
 }
 
-Field texture_coordinates() { return integer("texCoord", 0, 0, 1); }
+SchemaField texture_coordinates() { return integer("texCoord", 0, 0, 1); }
 
 /// KHR_texture_transform of a textureInfo or a displacement map.
-Field texture_transform() {
+SchemaField texture_transform() {
   static const Schema transform{
       {reals("offset", {0.0, 0.0}, -kLargest, kLargest), number("rotation", 0.0, -kLargest, kLargest),
        reals("scale", {1.0, 1.0}, -kLargest, kLargest), integer("texCoord", {}, 0, 1)}};
@@ -90,12 +91,12 @@ Field texture_transform() {
 }
 
 /// textureInfo, with the extra number of normal and occlusion textures if there is one.
-Schema texture_info(std::vector<Field> extra = {}) {
+Schema texture_info(std::vector<SchemaField> extra = {}) {
   static const Schema relook{{unwritten(optional("mapping", mapping_schema()))}};
   static const Schema extras = wrapped("relook", relook, false);
   Schema info{
       {name("index", Target::textures, true), texture_coordinates(), texture_transform(), optional("extras", extras)}};
-  for (Field& field : extra) info.fields.push_back(std::move(field));
+  for (SchemaField& field : extra) info.fields.push_back(std::move(field));
   return info;
 }
 
@@ -103,67 +104,51 @@ const Schema& plain_texture() {
   static const Schema info = texture_info();
   return info;
 }
-const Schema& normal_texture() {
-  static const Schema info = texture_info({number("scale", 1.0, -kLargest, kLargest)});
-  return info;
+
+/// The value of a field that is no texture slot.
+SchemaField value_of(const MaterialRow& row, std::string_view key) {
+  const auto& fallback = row.fallback;
+  if (!row.choices.empty())
+    return choice(key, row.choices[static_cast<std::size_t>(fallback[0])], {row.choices.begin(), row.choices.end()});
+  if (std::holds_alternative<bool Material::*>(row.member)) return boolean(key, fallback[0] != 0);
+  if (std::holds_alternative<Color Material::*>(row.member))
+    return reals(key, {fallback[0], fallback[1], fallback[2]}, row.low, row.high);
+  if (std::holds_alternative<Rgba Material::*>(row.member)) return reals(key, fallback, row.low, row.high);
+  SchemaField field = number(key, fallback[0], row.low, row.high);
+  if (row.has(MaterialRow::zero_too)) field = or_zero(std::move(field));
+  if (!row.has(MaterialRow::unwritten)) return field;
+  field.fallback = {};
+  return unwritten(std::move(field));
 }
 
-const Schema& material_extensions() {
-  static const Schema ior{{or_zero(number("ior", 1.5, 1, kLargest))}};
-  static const Schema dispersion{{number("dispersion", 0.0, 0, kLargest)}};
-  static const Schema transmission{
-      {number("transmissionFactor", 0.0, 0, 1), optional("transmissionTexture", plain_texture())}};
-  static const Schema volume{{number("thicknessFactor", 0.0, 0, kLargest), optional("thicknessTexture", plain_texture()),
-                              unwritten(number("attenuationDistance", {}, kAboveZero, kHuge)),
-                              reals("attenuationColor", {1.0, 1.0, 1.0}, 0, 1)}};
-  static const Schema specular{{number("specularFactor", 1.0, 0, 1), optional("specularTexture", plain_texture()),
-                                reals("specularColorFactor", {1.0, 1.0, 1.0}, 0, kLargest),
-                                optional("specularColorTexture", plain_texture())}};
-  static const Schema clearcoat{{number("clearcoatFactor", 0.0, 0, 1), optional("clearcoatTexture", plain_texture()),
-                                 number("clearcoatRoughnessFactor", 0.0, 0, 1),
-                                 optional("clearcoatRoughnessTexture", plain_texture()),
-                                 optional("clearcoatNormalTexture", normal_texture())}};
-  static const Schema sheen{{reals("sheenColorFactor", {0.0, 0.0, 0.0}, 0, 1),
-                             optional("sheenColorTexture", plain_texture()), number("sheenRoughnessFactor", 0.0, 0, 1),
-                             optional("sheenRoughnessTexture", plain_texture())}};
-  static const Schema anisotropy{{number("anisotropyStrength", 0.0, 0, 1),
-                                  number("anisotropyRotation", 0.0, -kLargest, kLargest),
-                                  optional("anisotropyTexture", plain_texture())}};
-  static const Schema iridescence{
-      {number("iridescenceFactor", 0.0, 0, 1), optional("iridescenceTexture", plain_texture()),
-       number("iridescenceIor", 1.3, 1, kLargest), number("iridescenceThicknessMinimum", 100.0, 0, kLargest),
-       number("iridescenceThicknessMaximum", 400.0, 0, kLargest),
-       optional("iridescenceThicknessTexture", plain_texture())}};
-  static const Schema emissive_strength{{number("emissiveStrength", 1.0, 0, kLargest)}};
-  static const Schema unlit{};
-  static const Schema extensions{
-      {implied("KHR_materials_ior", ior), implied("KHR_materials_dispersion", dispersion),
-       implied("KHR_materials_transmission", transmission),
-       implied("KHR_materials_volume", volume), implied("KHR_materials_specular", specular),
-       implied("KHR_materials_clearcoat", clearcoat), implied("KHR_materials_sheen", sheen),
-       implied("KHR_materials_anisotropy", anisotropy), implied("KHR_materials_iridescence", iridescence),
-       implied("KHR_materials_emissive_strength", emissive_strength), optional("KHR_materials_unlit", unlit)}};
-  return extensions;
+/// The members of an object of a material: of the rows with pointers below `prefix`, "" or "extensions/".
+std::vector<SchemaField> members_below(const std::string& prefix, std::span<const MaterialRow> rows,
+                                       std::deque<Schema>& parts) {
+  std::vector<SchemaField> members;
+  for (const MaterialRow& row : rows) {
+    if (!row.pointer.starts_with(prefix)) continue;
+    std::string_view key = row.pointer.substr(prefix.size());
+    key = key.substr(0, key.find('/'));
+    if (std::ranges::find(members, key, &SchemaField::key) != members.end()) continue;
+    const bool is_inner = prefix.size() + key.size() < row.pointer.size();
+    if (!is_inner && row.slot() == nullptr) {
+      members.push_back(value_of(row, key));
+      continue;
+    }
+    std::vector<SchemaField> inner = members_below(prefix + std::string(key) + "/", rows, parts);
+    parts.push_back(is_inner ? Schema{std::move(inner)} : texture_info(std::move(inner)));
+    members.push_back(is_inner ? implied(key, parts.back()) : optional(key, parts.back()));
+  }
+  if (prefix == "extensions/") {
+    static const Schema unlit{};
+    members.push_back(optional("KHR_materials_unlit", unlit));
+  }
+  return members;
 }
 
 const Schema& material_schema() {
-  static const Schema metallic_roughness{{reals("baseColorFactor", {1.0, 1.0, 1.0, 1.0}, 0, 1),
-                                          number("metallicFactor", 1.0, 0, 1), number("roughnessFactor", 1.0, 0, 1),
-                                          optional("baseColorTexture", plain_texture()),
-                                          optional("metallicRoughnessTexture", plain_texture())}};
-  static const Schema occlusion = texture_info({number("strength", 1.0, 0, 1)});
-  static const Schema relook{{choice("model", "metallic-roughness", {"metallic-roughness", "blinn-phong", "unlit"}),
-                              reals("ambient", {1.0, 1.0, 1.0}, 0, kMost), reals("diffuse", {1.0, 1.0, 1.0}, 0, kMost),
-                              reals("specular", {0.5, 0.5, 0.5}, 0, kMost), number("shininess", 32.0, 0, kMost),
-                              number("reflection", 0.0, 0, 1), number("refraction", 0.0, 0, 1),
-                              number("transparency", 0.0, 0, 1)}};
-  static const Schema extras = wrapped("relook", relook);
-  static const Schema material{
-      {text("name"), implied("pbrMetallicRoughness", metallic_roughness), optional("normalTexture", normal_texture()),
-       optional("occlusionTexture", occlusion), optional("emissiveTexture", plain_texture()),
-       reals("emissiveFactor", {0.0, 0.0, 0.0}, 0, 1), choice("alphaMode", "OPAQUE", {"OPAQUE", "MASK", "BLEND"}),
-       number("alphaCutoff", 0.5, 0, kHuge), boolean("doubleSided", false),
-       implied("extensions", material_extensions()), implied("extras", extras)}};
+  static std::deque<Schema> parts;
+  static const Schema material = material_schema(material_rows(), parts);
   return material;
 }
 
@@ -228,7 +213,7 @@ const Schema& node_schema() {
   static const Schema relook{{optional("displacement", displacement), text("instances")}};
   static const Schema extras = wrapped("relook", relook, false);
   static const Schema node = [] {
-    Field children = names("children", Target::nodes);
+    SchemaField children = names("children", Target::nodes);
     children.fallback = Json::array();
     Schema schema{
         {text("name"), name("mesh", Target::meshes), name("skin", Target::skins), numbers("weights", -kLargest, kLargest),
@@ -290,20 +275,25 @@ const Schema& extensions_schema() {
   return extensions;
 }
 
+Schema material_schema(std::span<const MaterialRow> rows, std::deque<Schema>& parts) {
+  Schema material{{text("name")}};
+  for (SchemaField& member : members_below("", rows, parts)) material.fields.push_back(std::move(member));
+  return material;
+}
+
 const Schema& file_material_schema() {
   static const Schema specular_glossiness{
       {reals("diffuseFactor", {1.0, 1.0, 1.0, 1.0}, 0, 1), optional("diffuseTexture", plain_texture()),
        reals("specularFactor", {1.0, 1.0, 1.0}, 0, 1), number("glossinessFactor", 1.0, 0, 1),
        optional("specularGlossinessTexture", plain_texture())}};
   static const Schema extensions = [] {
-    Schema all = material_extensions();
+    Schema all = *std::ranges::find(material_schema().fields, "extensions", &SchemaField::key)->inner;
     all.fields.push_back(optional("KHR_materials_pbrSpecularGlossiness", specular_glossiness));
     return all;
   }();
   static const Schema material = [] {
     Schema all = material_schema();
-    for (Field& field : all.fields)
-      if (field.key == "extensions") field.inner = &extensions;
+    std::ranges::find(all.fields, "extensions", &SchemaField::key)->inner = &extensions;
     return all;
   }();
   return material;

@@ -2,6 +2,7 @@
 // One table serves four walks: cutting a glTF value down to what is supported, filling defaults, checking an edited
 // value, and visiting the names it refers to. glTF 2.0 section 5 and the KHR_* extensions; extras.relook.
 #pragma once
+#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -12,6 +13,7 @@
 #include "base/error.h"
 #include "base/json.h"
 #include "scene/look/look.h"
+#include "scene/material_fields.h"
 
 namespace relook {
 
@@ -34,7 +36,7 @@ enum class Target : std::uint8_t {
 [[nodiscard]] std::string_view target_noun(Target target);  // "material"
 
 struct Schema;
-struct Field {
+struct SchemaField {
   std::string_view key;
   FieldKind kind = FieldKind::number;
   Json fallback = {};                          // null: absent until set
@@ -52,13 +54,15 @@ struct Field {
   bool unwritten = false;
 };
 struct Schema {
-  std::vector<Field> fields;
+  std::vector<SchemaField> fields;
 };
 
 [[nodiscard]] const Schema& schema_of(Section section);
 [[nodiscard]] const Schema& scene_schema();       // /scene
 [[nodiscard]] const Schema& extensions_schema();  // /extensions
 [[nodiscard]] const Schema& camera_schema();      // an entry of glTF's cameras
+/// That of materials with other fields than schema_of(Section::materials). `parts` takes the schemas of inner objects.
+[[nodiscard]] Schema material_schema(std::span<const MaterialRow> rows, std::deque<Schema>& parts);
 /// A material of a file: with what is converted before it becomes one of a look document.
 [[nodiscard]] const Schema& file_material_schema();
 
@@ -67,12 +71,14 @@ inline constexpr double kAboveZero = 1e-30;
 /// The bounds of numbers for which glTF has none: what a float holds, or where products of a few must stay finite.
 inline constexpr double kUnbounded = 3.4028234663852886e38;
 inline constexpr double kCeiling = 1e12;
+/// Likewise of what is relook's own.
+inline constexpr double kOwnCeiling = 1e6;
 
 /// The number that `x` stands for in a number or reals field: itself where it is allowed; the bound where only rounding
 /// (1e-6 of it, or of 1) puts `x` beyond, or where the bound is not glTF's but one of the two above; none otherwise.
-[[nodiscard]] std::optional<double> fitted(const Field& field, double x);
+[[nodiscard]] std::optional<double> fitted(const SchemaField& field, double x);
 /// "1.5 is above 1"; requires an `x` that the field does not allow.
-[[nodiscard]] std::string range_fault(const Field& field, const Json& x);
+[[nodiscard]] std::string range_fault(const SchemaField& field, const Json& x);
 
 /// Removes, at every level, the keys that the schema does not know. Values of a wrong type stay.
 void cut_to_schema(const Schema& schema, Json& value);
@@ -83,7 +89,7 @@ void visit_names(const Schema& schema, Json& value, const std::function<void(Tar
 void visit_names(const Schema& schema, const Json& value, const std::function<void(Target, const Json&)>& visit);
 
 /// The field that a JSON pointer's tokens lead to below `schema`; null if it knows none.
-[[nodiscard]] const Field* field_at(const Schema& schema, std::span<const std::string> tokens);
+[[nodiscard]] const SchemaField* field_at(const Schema& schema, std::span<const std::string> tokens);
 
 /// A wrong value of a look document; knows its place so that a journal's reader can name its own.
 struct LookError : InputError {

@@ -13,13 +13,13 @@ namespace {
 constexpr std::array<std::string_view, 10> kNouns{"material", "texture", "image", "sampler", "mesh",
                                                   "light",    "node",    "skin",  "camera",  "variant"};
 
-const Field* find_field(const Schema& schema, std::string_view key) {
-  for (const Field& field : schema.fields)
+const SchemaField* find_field(const Schema& schema, std::string_view key) {
+  for (const SchemaField& field : schema.fields)
     if (field.key == key) return &field;
   return nullptr;
 }
 
-bool is_allowed(const Field& field, double x) {
+bool is_allowed(const SchemaField& field, double x) {
   if (!field.codes.empty()) return std::ranges::find(field.codes, x) != field.codes.end();
   return (x >= field.low && x <= field.high) || (field.zero_too && x == 0);
 }
@@ -39,7 +39,7 @@ std::string short_number(const Json& value) {
 template <class Value, class Visit>
 void walk_names(const Schema& schema, Value& value, const Visit& visit) {
   if (!value.is_object()) return;
-  for (const Field& field : schema.fields) {
+  for (const SchemaField& field : schema.fields) {
     if (field.kind < FieldKind::name) continue;
     const auto found = value.find(field.key);
     if (found == value.end()) continue;
@@ -70,7 +70,7 @@ class Checker {
   void object(const Schema& schema, const Json& value, const JsonPlace& place) const {
     if (!value.is_object()) fail(place, "expected an object, got " + std::string(type_noun(value)));
     std::size_t known = 0;
-    for (const Field& field : schema.fields) {
+    for (const SchemaField& field : schema.fields) {
       const auto found = value.find(field.key);
       if (found != value.end()) {
         ++known;
@@ -89,7 +89,7 @@ class Checker {
 
   [[noreturn]] void unknown_key(const Schema& schema, const Json& value, const JsonPlace& place) const {
     std::vector<std::string> known;
-    for (const Field& field : schema.fields) known.emplace_back(field.key);
+    for (const SchemaField& field : schema.fields) known.emplace_back(field.key);
     for (const auto& item : value.items()) {
       const std::string& key = item.key();
       if (find_field(schema, key) != nullptr) continue;
@@ -100,7 +100,7 @@ class Checker {
     fail(place, "unknown key");
   }
 
-  void member(const Field& field, const Json& value, const JsonPlace& place) const {
+  void member(const SchemaField& field, const Json& value, const JsonPlace& place) const {
     switch (field.kind) {
       case FieldKind::number:
         number(field, value, place);
@@ -149,12 +149,12 @@ class Checker {
     if (!value.is_string()) fail(place, "expected a string, got " + std::string(type_noun(value)));
   }
 
-  void number(const Field& field, const Json& value, const JsonPlace& place) const {
+  void number(const SchemaField& field, const Json& value, const JsonPlace& place) const {
     if (!value.is_number()) fail(place, "expected a number, got " + std::string(type_noun(value)));
     if (!is_allowed(field, value.get<double>())) fail(place, range_fault(field, value));
   }
 
-  void reals(const Field& field, const Json& value, const JsonPlace& place) const {
+  void reals(const SchemaField& field, const Json& value, const JsonPlace& place) const {
     if (field.count == 0 && !value.is_array())
       fail(place, "expected an array of numbers, got " + std::string(type_noun(value)));
     if (field.count != 0 && (!value.is_array() || value.size() != field.count))
@@ -163,7 +163,7 @@ class Checker {
     for (std::size_t i = 0; i < value.size(); ++i) number(field, value[i], {&place, {}, i});
   }
 
-  void choice(const Field& field, const Json& value, const JsonPlace& place) const {
+  void choice(const SchemaField& field, const Json& value, const JsonPlace& place) const {
     text(value, place);
     const auto& word = value.get_ref<const std::string&>();
     if (std::find(field.choices.begin(), field.choices.end(), word) != field.choices.end()) return;
@@ -210,7 +210,7 @@ const Json* names_of(const LookDocument& document, Target target) {
 
 }  // namespace
 
-std::optional<double> fitted(const Field& field, double x) {
+std::optional<double> fitted(const SchemaField& field, double x) {
   if (is_allowed(field, x)) return x;
   if (!std::isfinite(x) || !field.codes.empty()) return {};
   const bool is_above = x > field.high;
@@ -222,7 +222,7 @@ std::optional<double> fitted(const Field& field, double x) {
   return bound;
 }
 
-std::string range_fault(const Field& field, const Json& number) {
+std::string range_fault(const SchemaField& field, const Json& number) {
   const auto x = number.get<double>();
   if (!std::isfinite(x)) return "expected a finite number";
   std::string fault = short_number(number);
@@ -250,7 +250,7 @@ std::string_view type_noun(const Json& value) {
 void cut_to_schema(const Schema& schema, Json& value) {
   if (!value.is_object()) return;
   for (auto member = value.begin(); member != value.end();) {
-    const Field* field = find_field(schema, member.key());
+    const SchemaField* field = find_field(schema, member.key());
     // Foreign extras may be of any type.
     if (field == nullptr || (field->key == "extras" && !member->is_object())) {
       member = value.erase(member);
@@ -265,7 +265,7 @@ void cut_to_schema(const Schema& schema, Json& value) {
 
 void fill_from_schema(const Schema& schema, Json& value) {
   if (!value.is_object()) return;
-  for (const Field& field : schema.fields) {
+  for (const SchemaField& field : schema.fields) {
     auto member = value.find(field.key);
     if (member == value.end() && (field.implied || !field.fallback.is_null()))
       member = value.emplace(std::string(field.key), field.implied ? Json::object() : field.fallback).first;
@@ -276,8 +276,8 @@ void fill_from_schema(const Schema& schema, Json& value) {
   }
 }
 
-const Field* field_at(const Schema& schema, std::span<const std::string> tokens) {
-  const Field* field = nullptr;
+const SchemaField* field_at(const Schema& schema, std::span<const std::string> tokens) {
+  const SchemaField* field = nullptr;
   const Schema* level = &schema;
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     field = level == nullptr ? nullptr : find_field(*level, tokens[i]);

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "trace/tree/shadow_segment.h"
+#include "trace/tree/spawn.h"
+
 namespace relook {
 
 HitFinder::HitFinder(const GrowScene& grow, const RayChange& change, GrowCounters& counters)
@@ -27,13 +30,13 @@ void HitFinder::find(const SpawnedRay& primary, const PathCursor& path, std::vec
 void HitFinder::find_node(const SpawnedRay& before, const SpawnedRay& now) {
   const PathNode stored = cursor_.next();
   if (stored.is_miss()) return;
-  if (has_flag(stored.object(), RayChange::moved)) {
+  if (has_flag(stored.object, RayChange::moved)) {
     append_empty(stored);
     skip_trees(stored.children());
     return;
   }
   RayNode node(kNoNode, 0, before);
-  node.object = stored.object();
+  node.object = stored.object;
   const Meeting meeting = rays_.meeting(node.object, ray_of(before));  // what it goes on behind was found before
   node.hit = meeting.hit;
   node.t = meeting.t;
@@ -45,7 +48,6 @@ void HitFinder::find_node(const SpawnedRay& before, const SpawnedRay& now) {
 
 void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
   EntryReader entries(stored.entries, g_.shadow_bits);
-  const Scene& scene = g_.scene.scene();
   const auto is_steady = [&](std::uint32_t object) { return !has_flag(ObjectId(object), RayChange::shadows); };
   for (std::size_t old = 0; old < new_light_.size(); ++old) {
     const ShadowState state = shadow_state(stored.lights, old);
@@ -57,7 +59,7 @@ void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
     steady_.clear();
     std::ranges::copy_if(entry.objects, std::back_inserter(steady_), is_steady);
     if (steady_.empty()) continue;
-    const Light& light = scene.light(scene.light_order[new_light_[old]]);
+    const RayLight& light = g_.scene.light(new_light_[old]);
     auto crossing = rays_.filters(steady_, shadow_segment(node.point, light)).begin();
     for (std::size_t i = 0; i < entry.objects.size(); ++i)
       if (is_steady(entry.objects[i])) (*hits_)[first + i] = (crossing++)->hit;
@@ -70,7 +72,7 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
   const RayObject& then = respawns ? change_.before[change_.before_index[node.object.index()]] : object;
   if (!then.optics.spawns() && stored.children() == 0) return;
   const Spawned old = spawn(node, then, g_.max_depth);
-  if (old.mask != stored.branches()) refuse_trees();
+  if (old.branches != stored.branches()) refuse_trees();
   Spawned rays = old;
   if (respawns || now.fresnel_product != node.ray.fresnel_product) {
     RayNode as_now = node;
@@ -78,10 +80,11 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
     rays = spawn(as_now, object, g_.max_depth);
   }
   for (std::size_t b = 0; b < kBranches; ++b) {
-    if (!stored.has_child(static_cast<Branch>(b))) continue;
-    const bool goes_as_before = (rays.mask >> b & 1U) != 0 && rays.rays[b].is_same_way(old.rays[b]);
+    const auto branch = static_cast<Branch>(b);
+    if (!stored.has_child(branch)) continue;
+    const bool goes_as_before = rays.branches.has(branch) && rays.ray(branch).is_same_way(old.ray(branch));
     if (goes_as_before)
-      find_node(old.rays[b], rays.rays[b]);
+      find_node(old.ray(branch), rays.ray(branch));
     else
       skip_trees(1);
   }

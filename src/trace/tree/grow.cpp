@@ -21,10 +21,10 @@ class Expander {
     const PathNode node = take(stored_, hits);
     if (node.is_miss()) return index;
     if (is_kept_) {
-      grower_.set_hit(index, node.object(), hits.front());
+      grower_.set_hit(index, node.object, hits.front());
     } else {
-      const Meeting meeting = rays_.meeting(node.object(), ray_of(ray));  // what it goes on behind was found before
-      grower_.set_hit(index, node.object(), meeting.hit);
+      const Meeting meeting = rays_.meeting(node.object, ray_of(ray));  // what it goes on behind was found before
+      grower_.set_hit(index, node.object, meeting.hit);
       grower_.block().nodes[index].t = meeting.t;
     }
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
@@ -46,9 +46,9 @@ class Expander {
         grower_.set_filters(index, light, segment, grower_.filters_);
       }
     }
-    if (!grower_.grow().scene.object(node.object()).optics.spawns() && node.children() == 0) return index;
+    if (!grower_.grow().scene.object(node.object).optics.spawns() && node.children() == 0) return index;
     const Spawned rays = grower_.spawned(index);
-    if (rays.mask != node.branches()) refuse_trees();
+    if (rays.branches != node.branches()) refuse_trees();
     grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
   }

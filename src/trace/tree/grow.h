@@ -45,7 +45,7 @@ struct GrowScene {
   std::uint32_t shadow_bits = 0;  // of shadow counters; more than 0: the level is of a tracer that counts blockers
   const ObjectLevels* objects = nullptr;  // for trees whose hits are not kept; null if there are none
 
-  [[nodiscard]] PathLayout layout() const { return {scene.scene().light_order.size(), shadow_bits}; }
+  [[nodiscard]] PathLayout layout() const { return {scene.light_order().size(), shadow_bits}; }
 };
 
 /// Appends the ray trees of consecutive samples, traced, and the indices of their roots.

@@ -10,6 +10,8 @@
 
 #include "trace/tree/grow.h"
 #include "trace/tree/shadow_counter.h"
+#include "trace/tree/shadow_segment.h"
+#include "trace/tree/spawn.h"
 
 namespace relook {
 
@@ -53,17 +55,18 @@ class Grower {
   Spawned spawned(std::uint32_t index) {
     RayNode& node = b_.nodes[index];
     const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
-    node.cut_mask = rays.cut_mask;
+    node.cut = rays.cut;
     return rays;
   }
 
   /// Calls grow_child(branch, ray) -> index for each spawned ray, in order.
   template <class GrowChild>
   void for_each_child(std::uint32_t index, const Spawned& rays, const GrowChild& grow_child) {
-    for (std::size_t branch = 0; branch < kBranches; ++branch) {
-      if ((rays.mask >> branch & 1U) == 0) continue;
-      const std::uint32_t child = grow_child(static_cast<Branch>(branch), rays.rays[branch]);
-      b_.nodes[index].child[branch] = child;
+    for (std::size_t b = 0; b < kBranches; ++b) {
+      const auto branch = static_cast<Branch>(b);
+      if (!rays.branches.has(branch)) continue;
+      const std::uint32_t child = grow_child(branch, rays.ray(branch));
+      b_.nodes[index].child[b] = child;
     }
   }
 
@@ -96,7 +99,7 @@ class Grower {
   bool gathers(std::uint32_t index, std::size_t light, ShadowSegment& segment) const {
     const RayNode& node = b_.nodes[index];
     if (is_interface_only(g_.scene.object(node.object), node.point)) return false;
-    segment = shadow_segment(node.point, g_.scene.scene().light(lights()[light]));
+    segment = shadow_segment(node.point, g_.scene.light(light));
     return segment.faces;
   }
 
@@ -145,7 +148,7 @@ class Grower {
     for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }
 
-  [[nodiscard]] const std::vector<LightId>& lights() const { return g_.scene.scene().light_order; }
+  [[nodiscard]] const std::vector<LightId>& lights() const { return g_.scene.light_order(); }
   [[nodiscard]] TreeBlock& block() { return b_; }
   [[nodiscard]] const GrowScene& grow() const { return g_; }
   std::vector<Crossing> crossings_;

@@ -2,6 +2,8 @@
 
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
+#include "trace/tree/shadow_segment.h"
+#include "trace/tree/spawn.h"
 
 namespace relook {
 namespace {
@@ -27,13 +29,13 @@ class Prober {
     }
     RayNode node(kNoNode, 0, ray);
     if (!stored.is_miss()) {
-      node.object = stored.object();
+      node.object = stored.object;
       node.hit = hits.front();
       complete(node, g_.scene.object(node.object));
     }
     if (meets(node, touch->ray)) return true;
     if (stored.is_miss()) return false;
-    if ((touch->open | touch->blocked) == 0)
+    if ((touch->open | touch->blocked).empty())
       counters_.culled.tunnels += stored.shadow_segments;
     else if (lights_change(node, stored, *touch))
       return true;
@@ -53,12 +55,12 @@ class Prober {
   }
 
   [[nodiscard]] bool lights_change(const RayNode& node, const PathNode& stored, const Touch& touch) {
-    const auto& lights = g_.scene.scene().light_order;
-    for (std::size_t light = 0; light < lights.size(); ++light) {
+    const std::size_t lights = g_.scene.light_order().size();
+    for (std::size_t light = 0; light < lights; ++light) {
       const ShadowState state = shadow_state(stored.lights, light);
       if (state == ShadowState::facing_away) continue;
       const bool touched = touch.touches(state == ShadowState::blocked, light);
-      const ShadowSegment segment = shadow_segment(node.point, g_.scene.scene().light(lights[light]));
+      const ShadowSegment segment = shadow_segment(node.point, g_.scene.light(light));
       const Ray ray{segment.origin, segment.direction, segment.t_max};
       const auto tests = tests_.tests_shadow(state, touched, ray);
       if (tests.before && crosses(change_.shadows_before, ray)) return true;
@@ -74,7 +76,7 @@ class Prober {
     const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
-      if (stored.has_child(branch) && probe(rays.rays[b], child_of(history, branch))) return true;
+      if (stored.has_child(branch) && probe(rays.ray(branch), history.child(branch))) return true;
     }
     return false;
   }
@@ -92,7 +94,7 @@ class Prober {
 
 bool probe_tree(const GrowScene& grow, const RayChange& change, const Touches& touches, const SpawnedRay& primary,
                 StoredTree stored, GrowCounters& counters) {
-  return Prober(grow, change, touches, stored, counters).probe(primary, kPrimary);
+  return Prober(grow, change, touches, stored, counters).probe(primary, History::primary());
 }
 
 }  // namespace relook

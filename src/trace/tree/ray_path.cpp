@@ -74,7 +74,7 @@ std::string broken_entry(std::span<const std::uint32_t> words, ShadowState state
 std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words, std::size_t objects,
                                            const PathLayout& layout) {
   std::vector<std::string> broken;
-  const std::size_t light_words = (layout.lights + 15) / 16;
+  const std::size_t light_words = LightStates::words_of(layout.lights);
   std::size_t i = 0;
   std::size_t expected = 1;  // nodes still owed: the root, then the children announced
   const auto left = [&](std::size_t count) { return words.size() - i >= count; };
@@ -85,9 +85,9 @@ std::vector<std::string> broken_invariants(std::span<const std::uint32_t> words,
     if (object == PathTable::kMissWord) continue;
     if (object >= objects) broken.push_back("object index out of range");
     if (!left(1 + light_words)) return {"a node is cut short"};
-    const std::uint32_t flags = words[i++];
-    if ((flags & ~kKnownFlags) != 0) broken.push_back("unknown flags");
-    expected += static_cast<std::size_t>(std::popcount(branches_of(flags)));
+    const NodeFlags flags = NodeFlags::of_word(words[i++]);
+    if (!flags.is_sound()) broken.push_back("unknown flags");
+    expected += flags.branches().size();
     const std::size_t states = i;
     i += light_words;
     for (std::size_t light = 0; light < layout.lights; ++light) {

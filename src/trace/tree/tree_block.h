@@ -8,40 +8,12 @@
 #include <vector>
 
 #include "trace/surface.h"
-#include "trace/tracer.h"
-#include "trace/tree/ray_path.h"
+#include "trace/tree/path_words.h"
+#include "trace/tree/spawned_ray.h"
 
 namespace relook {
 
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
-
-/// A ray on its way: the primary ray of a sample, or one spawned by a hit. One that goes straight on has no origin of
-/// its own: it is the ray that it comes from, behind that hit.
-struct SpawnedRay {
-  Point origin{0, 0, 0};
-  Direction direction{0, 0, -1};  // unit
-  float cone_width = 0;           // metres, at the origin
-  float cone_spread = 0;          // metres per metre
-  float fresnel_product = 1;      // of the dielectric terms so far: the cut-off
-  std::uint8_t generation = 1;    // 1: primary
-  Branch branch = Branch::primary;
-  Channel channel = Channel::all;                      // follows from the branches that lead here
-  float start = 0;                                     // metres: nothing is met before
-  float end = std::numeric_limits<float>::infinity();  // nor after
-  Meeting behind{};           // the hit that it goes straight on from; t NaN: not known; object none: no such hit
-  float travelled = 0;        // metres from the origin to that hit
-  float travelled_slack = 0;  // distance_slack() there
-
-  [[nodiscard]] bool goes_on() const { return !behind.object.is_none(); }
-  [[nodiscard]] bool is_same_way(const SpawnedRay& other) const {
-    return origin == other.origin && direction == other.direction && goes_on() == other.goes_on();
-  }
-};
-
-/// The ray as it is traced.
-[[nodiscard]] inline Ray ray_of(const SpawnedRay& spawned) {
-  return {spawned.origin, spawned.direction, spawned.end, spawned.start, spawned.behind};
-}
 
 /// A node of a ray tree: a hit, or the environment when the ray left the scene.
 struct RayNode {
@@ -55,13 +27,20 @@ struct RayNode {
   ObjectId object;       // none: miss
   Hit hit;
   SpawnedRay ray;                                     // that led here
-  std::uint8_t cut_mask = 0;                          // branches that the Fresnel cut-off removed
+  BranchSet cut;                                      // branches that the Fresnel cut-off removed
   float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
   float length = 0;                                   // metres from the ray's origin
   float footprint = 0;                                // ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
 };
+
+[[nodiscard]] inline BranchSet children_of(const RayNode& node) {
+  BranchSet children;
+  for (std::size_t b = 0; b < kBranches; ++b)
+    if (node.child[b] != kNoNode) children.add(static_cast<Branch>(b));
+  return children;
+}
 
 /// What stands between a node and one light.
 struct LightLink {
@@ -102,41 +81,11 @@ struct TreeBlock {
   void clear() { rewind({}); }
 };
 
-/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back. A pure function of the node,
-/// its object and the options.
-struct Spawned {
-  std::array<SpawnedRay, kBranches> rays;
-  std::uint8_t mask = 0;  // bit b: rays[b] is there
-  std::uint8_t cut_mask = 0;
-};
-[[nodiscard]] Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth);
-
 /// Fills length, footprint and point of a node whose ray, object and hit are set.
 void complete(RayNode& node, const RayObject& object);
 
 /// A hit's distance is known up to rounding, the more so the flatter the ray meets its triangle: the half width of the
 /// band, in metres along the ray, within which only the whole scene decides what is nearer.
 [[nodiscard]] float distance_slack(const RayNode& node, const RayObject& object);
-
-/// The shadow segment from a point to a light: t runs to 1 at a point or spot light.
-struct ShadowSegment {
-  bool faces = false;  // the light is above the smooth surface
-  Point origin{0, 0, 0};
-  Direction direction{0, 0, 1};
-  float t_max = 1;
-};
-[[nodiscard]] ShadowSegment shadow_segment(const SurfacePoint& point, const Light& light);
-/// True where no light is gathered and no segments are kept: the inner side of a volume.
-[[nodiscard]] inline bool is_interface_only(const RayObject& object, const SurfacePoint& point) {
-  return object.optics.volume && point.inside;
-}
-
-/// Completes the filters [first, first + count) of one segment: points and lengths inside volumes.
-void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSegment& segment, FilterNode* filters,
-                      std::size_t count);
-
-/// The path words of the sample whose nodes start at `root`, appended to `words`; its hits appended to `hits`.
-void pack(const TreeBlock& block, std::uint32_t root, const PathLayout& layout, std::vector<std::uint32_t>& words,
-          std::vector<Hit>& hits);
 
 }  // namespace relook

@@ -5,6 +5,7 @@
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
 #include "trace/tree/shadow_line.h"
+#include "trace/tree/spawn.h"
 
 namespace relook {
 namespace {
@@ -25,14 +26,14 @@ class Updater {
   std::uint32_t update(const SpawnedRay& ray, std::uint32_t parent, History history) {
     std::span<const Hit> hits;
     const PathNode node = take(stored_, hits);
-    if (!node.is_miss() && (change_.flags(node.object()) & RayChange::moved) != 0) {
+    if (!node.is_miss() && (change_.flags(node.object) & RayChange::moved) != 0) {
       // The selection is removed: what lies behind it shows (paper 2.2).
       counters_.culled.dropped += node.segments() + skip_children(stored_, node);
       note(TreeChange::all);
       return trace(ray, parent);
     }
     const std::uint32_t index = grower_.append(ray, parent);
-    if (!node.is_miss()) grower_.set_hit(index, node.object(), hits.front());
+    if (!node.is_miss()) grower_.set_hit(index, node.object, hits.front());
     const Touch touch = may_touch(history);
     if (test(index, node, touch.ray)) return index;
     if (node.is_miss()) return index;
@@ -45,10 +46,9 @@ class Updater {
  private:
   /// What of a node's segments the selection may meet.
   [[nodiscard]] Touch may_touch(History history) const {
-    constexpr std::uint32_t kAllLights = 0xFFFFFFFFU;
-    if (touches_ == nullptr) return {history, true, true, kAllLights, kAllLights};
+    if (touches_ == nullptr) return {history, true, true, LightSet::all(), LightSet::all()};
     const Touch* touch = touch_of(*touches_, history);
-    return touch != nullptr ? *touch : Touch{history, false, false, 0, 0};
+    return touch != nullptr ? *touch : Touch{history};
   }
 
   void note(TreeChange what) { what_ = std::max(what_, what); }
@@ -66,7 +66,7 @@ class Updater {
     Ray segment = stored_segment(ray);
     float slack = 0;
     if (touched && !node.is_miss()) {
-      slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object()));
+      slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object));
       segment.t_max = std::min(block.nodes[index].length + slack, ray.end);
     }
     if (!tests_.tests_ray(touched, segment)) return false;
@@ -82,7 +82,7 @@ class Updater {
     if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
       ++counters_.ray_updates;
       const Meeting nearest = Tracer::intersect(*grower_.grow().level, whole);
-      if (nearest.object == node.object() && nearest.hit == block.nodes[index].hit) return false;
+      if (nearest.object == node.object && nearest.hit == block.nodes[index].hit) return false;
       if (!nearest.object.is_none()) return regrow(index, node, nearest);
     }
     return regrow(index, node, meeting);
@@ -337,24 +337,25 @@ class Updater {
 
   void update_children(std::uint32_t index, const PathNode& node, History history) {
     const Spawned now = grower_.spawned(index);
-    if (now.cut_mask != node.flags >> kCutShift) note(TreeChange::all);
+    if (now.cut != node.flags.cut()) note(TreeChange::all);
     const RayNode parent = grower_.block().nodes[index];
-    const bool respawns = (change_.flags(node.object()) & RayChange::respawns) != 0;
+    const bool respawns = (change_.flags(node.object) & RayChange::respawns) != 0;
     Spawned before;
     if (respawns)
-      before = spawn(parent, change_.before[change_.before_index[node.object().index()]], grower_.grow().max_depth);
+      before = spawn(parent, change_.before[change_.before_index[node.object.index()]], grower_.grow().max_depth);
     for (std::size_t b = 0; b < kBranches; ++b) {
-      const bool is_stored = node.has_child(static_cast<Branch>(b)), is_now = (now.mask >> b & 1U) != 0;
+      const auto branch = static_cast<Branch>(b);
+      const bool is_stored = node.has_child(branch), is_now = now.branches.has(branch);
       if (is_stored != is_now) note(TreeChange::all);
       if (!is_now) {
         if (is_stored) counters_.culled.dropped += skip_tree(stored_);
         continue;
       }
-      const SpawnedRay& ray = now.rays[b];
-      const bool same_ray = !respawns || ((before.mask >> b & 1U) != 0 && before.rays[b].is_same_way(ray));
+      const SpawnedRay& ray = now.ray(branch);
+      const bool same_ray = !respawns || (before.branches.has(branch) && before.ray(branch).is_same_way(ray));
       std::uint32_t child = kNoNode;
       if (is_stored && same_ray) {
-        child = update(ray, index, child_of(history, static_cast<Branch>(b)));
+        child = update(ray, index, history.child(branch));
       } else {
         if (is_stored) counters_.culled.dropped += skip_tree(stored_);
         note(TreeChange::all);
@@ -386,7 +387,7 @@ std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const 
                           const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
                           GrowCounters& counters, TreeChange& what) {
   Updater updater(grow, change, touches, sample, stored, block, counters);
-  const std::uint32_t root = updater.update(primary, kNoNode, kPrimary);
+  const std::uint32_t root = updater.update(primary, kNoNode, History::primary());
   what = updater.what();
   return root;
 }

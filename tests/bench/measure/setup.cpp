@@ -87,9 +87,11 @@ void keep_faster(TimedStep& best, TimedStep step) {
 }
 
 Edit whole_edit(const JournalStep& step) {
-  Edit whole = step.edit;
-  if (!step.drag.empty() || !step.wedge.empty())
-    for (const Edit& entry : frames_of(step)) whole.insert(whole.end(), entry.begin(), entry.end());
+  Edit whole;
+  for (std::size_t frame = 0; frame < step.frames(); ++frame) {
+    const Edit entry = step.edit_of(frame);
+    whole.insert(whole.end(), entry.begin(), entry.end());
+  }
   return whole;
 }
 

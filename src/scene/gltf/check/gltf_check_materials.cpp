@@ -10,7 +10,7 @@ namespace {
 /// The textures that the slots below a value name.
 void check_slots(const JsonView& root, const JsonView& owner, const Schema& schema) {
   owner.require_object();
-  for (const Field& field : schema.fields) {
+  for (const SchemaField& field : schema.fields) {
     if (field.kind == FieldKind::name && field.target == Target::textures)
       (void)reference(owner.at(field.key), array_size(root, "textures"), "texture");
     if (field.kind != FieldKind::object || field.key == "extras") continue;

@@ -49,7 +49,7 @@ void mark_named(const Json& owner, std::string_view key, const Json& things, std
 
 /// Calls visit(info) for the textureInfo objects below a value.
 void for_each_slot(const Schema& schema, const Json& value, const std::function<void(const Json&)>& visit) {
-  for (const Field& field : schema.fields) {
+  for (const SchemaField& field : schema.fields) {
     if (field.kind != FieldKind::object) continue;
     const Json& inner = object_in(value, field.key);
     if (inner.empty()) continue;

@@ -21,7 +21,7 @@ class ValueCheck {
 
   /// Whether nothing had to be left out.
   bool object(const Schema& schema, Json& value, const JsonPlace& at) {
-    for (const Field& field : schema.fields) {
+    for (const SchemaField& field : schema.fields) {
       const auto found = value.find(field.key);
       const bool must_be_there = field.required && field.kind == FieldKind::choice;
       if (found == value.end() && must_be_there) {
@@ -53,7 +53,7 @@ class ValueCheck {
   }
 
   /// What is wrong with it, if it cannot be put right.
-  std::optional<Fault> member(const Field& field, Json& value, const JsonPlace& place) {
+  std::optional<Fault> member(const SchemaField& field, Json& value, const JsonPlace& place) {
     switch (field.kind) {
       case FieldKind::number:
         return number(field, value, place);
@@ -87,7 +87,7 @@ class ValueCheck {
   }
 
   /// 1.0 stands for 1 (glTF 2.0 section 3.1 wants no fraction).
-  std::optional<Fault> integer(const Field& field, Json& value, const JsonPlace& place) {
+  std::optional<Fault> integer(const SchemaField& field, Json& value, const JsonPlace& place) {
     constexpr double kMostExact = 1e9;
     if (!value.is_number_integer()) {
       const double x = value.is_number() ? value.get<double>() : 0.5;
@@ -98,7 +98,7 @@ class ValueCheck {
     return number(field, value, place);
   }
 
-  std::optional<Fault> number(const Field& field, Json& value, const JsonPlace& place) {
+  std::optional<Fault> number(const SchemaField& field, Json& value, const JsonPlace& place) {
     if (!value.is_number()) return wrong_type(place, "a number", value);
     const auto x = value.get<double>();
     const std::optional<double> fit = fitted(field, x);
@@ -110,7 +110,7 @@ class ValueCheck {
     return {};
   }
 
-  std::optional<Fault> reals(const Field& field, Json& value, const JsonPlace& place) {
+  std::optional<Fault> reals(const SchemaField& field, Json& value, const JsonPlace& place) {
     if (!value.is_array()) return wrong_type(place, "an array of numbers", value);
     if (field.count != 0 && value.size() != field.count)
       return Fault{place.text(), "expected an array of " + std::to_string(field.count) + " numbers, got " +
@@ -120,7 +120,7 @@ class ValueCheck {
     return {};
   }
 
-  static std::optional<Fault> choice(const Field& field, const Json& value, const JsonPlace& place) {
+  static std::optional<Fault> choice(const SchemaField& field, const Json& value, const JsonPlace& place) {
     if (!value.is_string()) return wrong_type(place, "a string", value);
     const auto& word = value.get_ref<const std::string&>();
     if (std::ranges::find(field.choices, word) != field.choices.end()) return {};

@@ -1,4 +1,4 @@
-#include "replay/frame_place.h"
+#include "edit/frame_place.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -26,14 +26,5 @@ std::string step_label(const FramePlace& place) {
 
 std::string frame_name(const FramePlace& place) { return numbered("frames", place, ".exr"); }
 std::string preview_name(const FramePlace& place) { return numbered("previews", place, ".png"); }
-
-FramePlace place_of(const JournalStep& entry, std::uint32_t step, std::size_t frame) {
-  if (entry.drag.empty() && entry.wedge.empty()) return {step, std::nullopt, 0};
-  return {step, static_cast<std::uint32_t>(frame + 1), static_cast<std::uint32_t>(frames_of(entry).size())};
-}
-
-FramePlace last_place_of(const JournalStep& entry, std::uint32_t step) {
-  return place_of(entry, step, frames_of(entry).size() - 1);
-}
 
 }  // namespace relook

@@ -1,11 +1,9 @@
-// Which of a journal's frames a frame is, and what it is called.
+// What a frame of a journal is called: in messages, and as a file of a run. Which frames there are, edit/journal_walk.h
+// says.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-
-#include "edit/journal.h"
 
 namespace relook {
 
@@ -20,10 +18,5 @@ struct FramePlace {
 /// "frames/0003.exr", "frames/0003_01.exr".
 [[nodiscard]] std::string frame_name(const FramePlace& place);
 [[nodiscard]] std::string preview_name(const FramePlace& place);
-
-/// The frame `entry` (from 0) of step `step` (from 1).
-[[nodiscard]] FramePlace place_of(const JournalStep& entry, std::uint32_t step, std::size_t frame);
-/// The last frame of a step.
-[[nodiscard]] FramePlace last_place_of(const JournalStep& entry, std::uint32_t step);
 
 }  // namespace relook

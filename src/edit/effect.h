@@ -1,0 +1,35 @@
+// What a change of one thing in the scene does, from its values before and after alone. Replay carries it out, and the
+// class that a report states (Table 1 of the paper) follows from it.
+#pragma once
+#include "edit/apply.h"
+#include "scene/material_fields.h"
+#include "scene/scene.h"
+#include "scene/surface_optics.h"
+
+namespace relook {
+
+/// Of an object.
+struct ObjectEffect {
+  bool moved = false;     // hits on the object are not valid any more; it may be met elsewhere
+  bool shadows = false;   // it blocks or filters light differently (moved objects too)
+  bool respawns = false;  // its hits stay, but other rays may leave from them
+};
+/// Geometric where it is moved, optical where rays leave otherwise (whatever filters light otherwise spawns otherwise).
+[[nodiscard]] ChangeClass class_of(const ObjectEffect& effect);
+
+/// Of another material, or of other values of its material, on an object whose mesh makes these optics of them.
+[[nodiscard]] ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_before, const Material& after,
+                                     const SurfaceOptics& optics_after,
+                                     std::span<const MaterialRow> rows = material_rows());
+/// Of all else about an object.
+[[nodiscard]] ObjectEffect effect_of(const Object& before, const Object& after);
+
+struct LightEffect {
+  bool exists_otherwise = false;  // it appears or disappears
+  bool moved = false;             // its light comes from elsewhere
+  bool recolored = false;         // a colour parameter is another one
+};
+[[nodiscard]] LightEffect effect_of(const Light& before, const Light& after);
+[[nodiscard]] ChangeClass class_of(const LightEffect& effect);
+
+}  // namespace relook
