@@ -15,7 +15,7 @@ constexpr std::size_t kLongestLayer = 255 - 2;  // bytes; OpenEXR takes 255 for 
 bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80; }
 
 /// `name` cut to `bytes` at most, between two characters of UTF-8.
-std::string cut(const std::string& name, std::size_t bytes) {
+std::string shortened(const std::string& name, std::size_t bytes) {
   if (name.size() <= bytes) return name;
   while (bytes > 0 && is_continuation(name[bytes])) --bytes;
   return name.substr(0, bytes);
@@ -52,7 +52,7 @@ std::string channel_name(std::string_view name) {
 class LayerNames {
  public:
   std::string take(const std::string& wanted) {
-    const std::string name = cut(wanted, kLongestLayer);
+    const std::string name = shortened(wanted, kLongestLayer);
     int& next = next_[name];  // what its next copy is numbered
     if (next == 0) {
       next = 2;
@@ -60,7 +60,7 @@ class LayerNames {
     }
     for (;;) {
       const std::string number = "_" + std::to_string(next++);
-      std::string result = cut(name, kLongestLayer - number.size()) + number;
+      std::string result = shortened(name, kLongestLayer - number.size()) + number;
       if (next_.try_emplace(result, 2).second) return result;
     }
   }

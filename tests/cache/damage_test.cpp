@@ -185,9 +185,9 @@ TEST_F(Damage, tiles_that_leave_memory_as_they_are_read_come_back_the_same) {
     for (std::size_t tile = 0; tile < image.trees.size(); ++tile) {
       const auto trees = residency.use(PieceKind::ray_trees, tile);
       const auto colors = residency.use(PieceKind::sample_colors, tile);
-      EXPECT_EQ(image.trees[tile].hits, written_.trees[tile].hits) << tile;
-      EXPECT_EQ(image.trees[tile].first_hit, written_.trees[tile].first_hit) << tile;
-      EXPECT_TRUE(same_colors(image.sample_colors[tile], written_.sample_colors[tile])) << tile;
+      EXPECT_EQ(image.trees[tile].hits, written_.image.trees[tile].hits) << tile;
+      EXPECT_EQ(image.trees[tile].first_hit, written_.image.trees[tile].first_hit) << tile;
+      EXPECT_TRUE(same_colors(image.sample_colors[tile], written_.image.sample_colors[tile])) << tile;
     }
   }
 }
