@@ -21,6 +21,7 @@ namespace relook {
 enum class PieceKind : std::uint8_t { ray_trees, sample_colors, tunnels };
 inline constexpr std::size_t kPieceKinds = 3;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
+[[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 
 struct ResidencyOptions {
   std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
@@ -104,7 +105,7 @@ class Residency {
   void set_needs(const MemoryNeeds& needs);
   /// All pieces of the kind are missing then, whatever was there before.
   void add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler);
-  [[nodiscard]] bool has_kind(PieceKind kind) const { return !kinds_[static_cast<std::size_t>(kind)].pieces.empty(); }
+  [[nodiscard]] bool has_kind(PieceKind kind) const { return !kinds_[index_of(kind)].pieces.empty(); }
   /// `bytes`: of what `list` offers. Not called while set otherwise.
   void set_others(std::function<std::uint64_t()> bytes, std::function<void(std::vector<Victim>&)> list);
 
@@ -183,9 +184,10 @@ class Residency {
     std::size_t victim;  // or index into victims_
   };
 
-  [[nodiscard]] Piece& piece(PieceKind kind, std::size_t tile) {
-    return kinds_[static_cast<std::size_t>(kind)].pieces[tile];
-  }
+  /// Trims of the allocator in one change: each takes some milliseconds.
+  static constexpr std::uint32_t kMostTrims = 32;
+
+  [[nodiscard]] Piece& piece(PieceKind kind, std::size_t tile) { return kinds_[index_of(kind)].pieces[tile]; }
   void release(PieceKind kind, std::size_t tile);
   void bring_back(PieceKind kind, std::size_t tile);
   bool fetch(PieceKind kind, std::size_t tile);

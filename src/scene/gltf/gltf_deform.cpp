@@ -18,7 +18,8 @@ std::size_t set_count(const GltfPrimitive& primitive) {
   return sets;
 }
 
-/// What a target adds to one column; empty for nothing but zeros.
+/// What a target adds to one column; empty for nothing but zeros. All columns of a mesh that is shown count: what could
+/// be derived would be so for the mesh at rest.
 std::vector<Imath::V3f> target_column(const PrimitiveSource& source, std::size_t target, std::string_view semantic) {
   const GltfAttributes& attributes = source.primitive.targets[target];
   const auto found = attributes.find(semantic);
@@ -29,7 +30,8 @@ std::vector<Imath::V3f> target_column(const PrimitiveSource& source, std::size_t
   if (accessor.count != count)
     source.fail(place, "has " + std::to_string(accessor.count) + " elements, the primitive has " +
                            std::to_string(count) + " vertices");
-  const auto values = column_of(source, accessor, place, {3, 3, true, false}, kLargestCoordinate, source.is_used);
+  const auto values = column_of(source, accessor, place, {3, 3, true, false}, kLargestCoordinate,
+                                source.use.meshes[source.mesh]);
   if (std::ranges::all_of(values, [](float value) { return value == 0; })) return {};
   std::vector<Imath::V3f> column;
   column.reserve(values.size() / 3);
@@ -79,14 +81,12 @@ void decode_joints(const PrimitiveSource& source, Mesh& mesh) {
   mesh.joint_weights.resize(vertices * influences);
   for (std::size_t set = 0; set < sets; ++set) {
     const GltfAccessor& joints = *source.accessor(joints_of(set));
-    if (source.is_skinned &&
+    if (source.reads(joints_of(set)) &&
         ((joints.component != Component::u8 && joints.component != Component::u16) || joints.normalized))
       source.fail(attribute_place(joints_of(set)), "joints must be unsigned integers of 8 or 16 bits");
     constexpr float kMostJoint = 65535, kLargestWeight = 1e6F;
-    const auto indices = attribute(source, joints_of(set), {kSetWidth, kSetWidth, true, false}, kMostJoint,
-                                   source.is_skinned);
-    const auto weights = attribute(source, weights_of(set), {kSetWidth, kSetWidth, true, true}, kLargestWeight,
-                                   source.is_skinned);
+    const auto indices = attribute(source, joints_of(set), {kSetWidth, kSetWidth, true, false}, kMostJoint);
+    const auto weights = attribute(source, weights_of(set), {kSetWidth, kSetWidth, true, true}, kLargestWeight);
     if (indices.empty() || weights.empty()) {
       mesh.joints.clear();
       mesh.joint_weights.clear();

@@ -1,5 +1,5 @@
-// Small readers over JsonView for glTF's own habits: optional members, arrays of objects, indices into other arrays.
-// Used by the gltf_*.cpp files alone.
+// Small readers for glTF's own habits: optional members, arrays of objects, indices into other arrays. Those over Json
+// read what may be wrong, those over JsonView say where. Used by the importer alone.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,6 +8,21 @@
 #include "base/json.h"
 
 namespace relook {
+
+/// The member, if it is there and an array; null otherwise. `Value`: Json or const Json.
+template <class Value>
+[[nodiscard]] Value* find_array(Value& owner, std::string_view key) {
+  if (!owner.is_object()) return nullptr;
+  const auto found = owner.find(key);
+  return found == owner.end() || !found->is_array() ? nullptr : &*found;
+}
+
+/// The same; an empty one where there is none.
+[[nodiscard]] inline const Json& array_or_empty(const Json& owner, std::string_view key) {
+  static const Json empty = Json::array();
+  const Json* found = find_array(owner, key);
+  return found == nullptr ? empty : *found;
+}
 
 /// The member, if it is there. An error if `owner` is no object.
 [[nodiscard]] inline std::optional<JsonView> member(const JsonView& owner, std::string_view key) {

@@ -141,8 +141,7 @@ void replace_missing_normals(Mesh& mesh) {
 }
 
 void decode_normals(const PrimitiveSource& source, Mesh& mesh) {
-  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kAnySize,
-                                source.is_used && source.read.is_lit);
+  const auto values = attribute(source, "NORMAL", {3, 3, true, true, true}, kAnySize);
   mesh.normals.reserve(values.size() / 3);
   for (std::size_t i = 0; i < values.size(); i += 3)
     mesh.normals.push_back(normalized(values[i], values[i + 1], values[i + 2]));
@@ -152,7 +151,7 @@ void decode_normals(const PrimitiveSource& source, Mesh& mesh) {
 /// Tangents without a direction, a side or normals make the whole column useless: it is derived from uv then.
 void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
   if (mesh.normals.empty()) return;  // glTF 3.7.2.1
-  const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kAnySize, false);
+  const auto values = attribute(source, "TANGENT", {4, 4, true, true, true}, kAnySize);
   mesh.tangents.reserve(values.size() / 4);
   for (std::size_t i = 0; i < values.size(); i += 4) {
     const Normal direction = normalized(values[i], values[i + 1], values[i + 2]);
@@ -173,7 +172,7 @@ void decode_tangents(const PrimitiveSource& source, Mesh& mesh) {
 }
 
 void decode_colors(const PrimitiveSource& source, Mesh& mesh) {
-  const auto values = attribute(source, "COLOR_0", {3, 4, true, true}, kAnySize, source.is_used);
+  const auto values = attribute(source, "COLOR_0", {3, 4, true, true}, kAnySize);
   if (values.empty()) return;
   const std::size_t width = source.accessor("COLOR_0")->width;
   const auto clamped = [&](std::size_t i) { return std::clamp(values[i], 0.0F, 1.0F); };
@@ -190,7 +189,7 @@ Mesh decode_primitive(PrimitiveSource source) {
   const std::size_t count = source.accessor("POSITION")->count;
   mesh.triangles = triangles_of(vertex_sequence(source, count), source.primitive.mode);
   source.vertices = gather_vertices(mesh.triangles);
-  const auto positions = attribute(source, "POSITION", {3, 3, true, false}, kLargestCoordinate, source.is_used);
+  const auto positions = attribute(source, "POSITION", {3, 3, true, false}, kLargestCoordinate);
   if (positions.empty()) return {};
   mesh.positions.reserve(positions.size() / 3);
   for (std::size_t i = 0; i < positions.size(); i += 3) {
@@ -200,8 +199,7 @@ Mesh decode_primitive(PrimitiveSource source) {
   decode_normals(source, mesh);
   decode_tangents(source, mesh);
   for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
-    const auto values = attribute(source, "TEXCOORD_" + std::to_string(set), {2, 2, true, false}, kAnySize,
-                                  source.is_used && source.read.uv[set]);
+    const auto values = attribute(source, "TEXCOORD_" + std::to_string(set), {2, 2, true, false}, kAnySize);
     mesh.uv[set].reserve(values.size() / 2);
     for (std::size_t i = 0; i < values.size(); i += 2) mesh.uv[set].emplace_back(bounded(values[i]), bounded(values[i + 1]));
   }
@@ -291,8 +289,7 @@ std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, const GltfU
         (primitive.mode < 4 ? not_triangles : without_positions).add(pointer);
         continue;
       }
-      Mesh mesh = decode_primitive({model, primitive, file, pointer, warnings, use.meshes[m],
-                                    use.skinned_meshes[m], use.primitives[m][p], {}});
+      Mesh mesh = decode_primitive({model, primitive, file, pointer, warnings, use, m, p, {}});
       mesh.primitive = static_cast<std::uint32_t>(p);
       if (mesh.triangles.empty())
         empty.add(pointer);

@@ -65,10 +65,10 @@ std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& 
 }
 
 std::vector<float> attribute(const PrimitiveSource& source, std::string_view semantic, const ColumnFormat& format,
-                             float largest, bool is_read) {
+                             float largest) {
   const GltfAccessor* accessor = source.accessor(semantic);
   if (accessor == nullptr) return {};
-  return column_of(source, *accessor, attribute_place(semantic), format, largest, is_read);
+  return column_of(source, *accessor, attribute_place(semantic), format, largest, source.reads(semantic));
 }
 
 }  // namespace relook

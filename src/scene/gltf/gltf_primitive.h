@@ -19,9 +19,8 @@ struct PrimitiveSource {
   std::string_view file;
   std::string pointer;  // "/meshes/0/primitives/1"
   std::vector<std::string>& warnings;
-  bool is_used = true;    // the scene shows the mesh
-  bool is_skinned = true;  // and bends it with a skin
-  GltfUse::Primitive read;
+  const GltfUse& use;
+  std::size_t mesh = 0, number = 0;     // of the primitive in its mesh
   std::vector<std::uint32_t> vertices;  // those that triangles name, increasing: the mesh has no others
 
   /// `place`: "/attributes/POSITION", below the primitive. Throws InputError.
@@ -31,6 +30,8 @@ struct PrimitiveSource {
   void forgive(const std::string& place, std::string_view what) const;
   /// Null without the attribute.
   [[nodiscard]] const GltfAccessor* accessor(std::string_view semantic) const;
+  /// Whether the scene reads the attribute.
+  [[nodiscard]] bool reads(std::string_view semantic) const { return use.reads(mesh, number, semantic); }
 };
 
 /// Which formats a column may have, KHR_mesh_quantization included.
@@ -50,7 +51,7 @@ struct ColumnFormat {
                                            bool is_read);
 /// The same of an attribute; empty without it.
 [[nodiscard]] std::vector<float> attribute(const PrimitiveSource& source, std::string_view semantic,
-                                           const ColumnFormat& format, float largest, bool is_read);
+                                           const ColumnFormat& format, float largest);
 
 /// Morph targets (glTF 2.0 section 3.7.2.2) of the columns that the mesh has.
 void decode_targets(const PrimitiveSource& source, Mesh& mesh);

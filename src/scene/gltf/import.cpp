@@ -41,30 +41,24 @@ void drop_missing_images(const std::vector<EncodedImage>& images, const GltfUse&
   }
 }
 
-const Json& array_of(const Json& owner, std::string_view key) {
-  static const Json empty = Json::array();
-  const auto found = owner.find(key);
-  return found == owner.end() ? empty : *found;
-}
-
 constexpr std::size_t kNoParent = SIZE_MAX;
 
 std::vector<std::size_t> parents_of(const Json& gltf) {
-  const Json& nodes = array_of(gltf, "nodes");
+  const Json& nodes = array_or_empty(gltf, "nodes");
   std::vector<std::size_t> parents(nodes.size(), kNoParent);
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (const Json& child : array_of(nodes[i], "children")) parents.at(child) = i;
+    for (const Json& child : array_or_empty(nodes[i], "children")) parents.at(child) = i;
   return parents;
 }
 
 /// Roots of the active scene that are none, and such as are named twice.
 void check_roots(const Json& gltf, std::string_view file, std::vector<std::string>& warnings) {
-  const Json& scenes = array_of(gltf, "scenes");
+  const Json& scenes = array_or_empty(gltf, "scenes");
   if (scenes.empty()) return;
   const std::size_t scene = gltf.value("scene", std::size_t{0});
   const std::vector<std::size_t> parents = parents_of(gltf);
   std::vector<bool> is_named(parents.size());
-  const Json& roots = array_of(scenes.at(scene), "nodes");
+  const Json& roots = array_or_empty(scenes.at(scene), "nodes");
   for (std::size_t i = 0; i < roots.size(); ++i) {
     const auto node = roots[i].get<std::size_t>();
     const std::string place = "/scenes/" + std::to_string(scene) + "/nodes/" + std::to_string(i);
@@ -79,12 +73,13 @@ void check_roots(const Json& gltf, std::string_view file, std::vector<std::strin
 }  // namespace
 
 std::vector<std::size_t> active_nodes(const Json& gltf) {
-  const Json& nodes = array_of(gltf, "nodes");
-  const Json& scenes = array_of(gltf, "scenes");
+  const Json& nodes = array_or_empty(gltf, "nodes");
+  const Json& scenes = array_or_empty(gltf, "scenes");
   const std::vector<std::size_t> parents = parents_of(gltf);
   std::vector<std::size_t> roots;
   if (!scenes.empty()) {
-    for (const Json& root : array_of(scenes.at(gltf.value("scene", std::size_t{0})), "nodes")) roots.push_back(root);
+    const Json& scene = scenes.at(gltf.value("scene", std::size_t{0}));
+    for (const Json& root : array_or_empty(scene, "nodes")) roots.push_back(root);
   } else {
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (parents[i] == kNoParent) roots.push_back(i);
@@ -98,7 +93,7 @@ std::vector<std::size_t> active_nodes(const Json& gltf) {
   };
   const auto add_descendants = [&] {
     for (std::size_t next = 0; next < active.size(); ++next)
-      for (const Json& child : array_of(nodes.at(active[next]), "children")) add(child);
+      for (const Json& child : array_or_empty(nodes.at(active[next]), "children")) add(child);
   };
   for (const std::size_t root : roots) add(root);
   add_descendants();

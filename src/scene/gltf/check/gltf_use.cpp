@@ -3,18 +3,12 @@
 #include <functional>
 
 #include "base/error.h"
+#include "scene/gltf/gltf_json.h"
 #include "scene/gltf/import.h"
 #include "scene/look/look_names.h"
 
 namespace relook {
 namespace {
-
-const Json& array_in(const Json& owner, std::string_view key) {
-  static const Json empty = Json::array();
-  if (!owner.is_object()) return empty;
-  const auto found = owner.find(key);
-  return found == owner.end() || !found->is_array() ? empty : *found;
-}
 
 const Json& object_in(const Json& owner, std::string_view key) {
   static const Json empty = Json::object();
@@ -84,16 +78,16 @@ class Reach {
  public:
   explicit Reach(const Json& gltf) : gltf_(gltf) {
     for (const auto& [section, used] : sections()) used->resize(gltf_array(gltf, section).size());
-    use_.cameras.resize(array_in(gltf, "cameras").size());
+    use_.cameras.resize(array_or_empty(gltf, "cameras").size());
     use_.skinned_meshes.resize(use_.meshes.size());
     uv_sets_ = uv_sets(gltf_array(gltf, Section::materials));
     for (const std::size_t node : active_nodes(gltf)) add_node(node);
     add_meshes();
     add_materials();
-    const Json& scenes = array_in(gltf, "scenes");
+    const Json& scenes = array_or_empty(gltf, "scenes");
     const std::size_t scene = gltf.value("scene", std::size_t{0});
     const Json& relook =
-        scene < scenes.size() ? object_in(object_in(scenes[scene], "extras"), "relook") : array_in(gltf, "");
+        scene < scenes.size() ? object_in(object_in(scenes[scene], "extras"), "relook") : array_or_empty(gltf, "");
     mark_named(object_in(relook, "environment"), "image", gltf_array(gltf, Section::images), use_.images);
   }
   GltfUse take() { return std::move(use_); }
@@ -122,7 +116,7 @@ class Reach {
     const Json& materials = gltf_array(gltf_, Section::materials);
     use_.primitives.resize(meshes.size());
     for (std::size_t m = 0; m < meshes.size(); ++m)
-      for (const Json& primitive : array_in(meshes[m], "primitives")) {
+      for (const Json& primitive : array_or_empty(meshes[m], "primitives")) {
         auto& [uv, is_lit] = use_.primitives[m].emplace_back();
         const auto add_material = [&](const Json& owner) {
           const std::size_t material = index_in(owner, "material", use_.materials.size());
@@ -133,7 +127,7 @@ class Reach {
         };
         add_material(primitive);
         const Json& variants = object_in(object_in(primitive, "extensions"), "KHR_materials_variants");
-        for (const Json& mapping : array_in(variants, "mappings"))
+        for (const Json& mapping : array_or_empty(variants, "mappings"))
           if (mapping.is_object()) add_material(mapping);
       }
   }
@@ -207,8 +201,8 @@ bool GltfUse::reads(std::size_t mesh, std::size_t primitive, std::string_view se
 GltfUse gltf_use(const Json& gltf) { return Reach(gltf).take(); }
 
 const Json& gltf_array(const Json& gltf, Section section) {
-  if (section != Section::lights) return array_in(gltf, section_name(section));
-  return array_in(object_in(object_in(gltf, "extensions"), "KHR_lights_punctual"), "lights");
+  if (section != Section::lights) return array_or_empty(gltf, section_name(section));
+  return array_or_empty(object_in(object_in(gltf, "extensions"), "KHR_lights_punctual"), "lights");
 }
 
 }  // namespace relook

@@ -134,11 +134,6 @@ class ValueCheck {
   std::vector<std::string>& warnings_;
 };
 
-Json* array_of(Json& gltf, std::string_view key) {
-  const auto found = gltf.find(key);
-  return found == gltf.end() ? nullptr : &*found;
-}
-
 Json* lights_of(Json& gltf) {
   const Json::json_pointer place("/extensions/KHR_lights_punctual/lights");
   return gltf.contains(place) ? &gltf[place] : nullptr;
@@ -246,7 +241,7 @@ void check_camera(Json& camera, const std::string& pointer, bool is_used, std::s
 
 void check_section(Json& gltf, Section section, const GltfUse& use, std::string_view file,
                    std::vector<std::string>& warnings) {
-  Json* const things = section == Section::lights ? lights_of(gltf) : array_of(gltf, section_name(section));
+  Json* const things = section == Section::lights ? lights_of(gltf) : find_array(gltf, section_name(section));
   if (things == nullptr) return;
   const std::string prefix =
       section == Section::lights ? "/extensions/KHR_lights_punctual/lights/" : "/" + std::string(section_name(section)) + "/";
@@ -267,7 +262,7 @@ void check_section(Json& gltf, Section section, const GltfUse& use, std::string_
 
 void check_gltf_values(Json& gltf, const GltfUse& use, std::string_view file, std::vector<std::string>& warnings) {
   for (std::size_t s = 0; s < kSectionCount; ++s) check_section(gltf, static_cast<Section>(s), use, file, warnings);
-  if (Json* const cameras = array_of(gltf, "cameras"))
+  if (Json* const cameras = find_array(gltf, "cameras"))
     for (std::size_t i = 0; i < cameras->size(); ++i)
       check_camera((*cameras)[i], "/cameras/" + std::to_string(i), use.cameras[i], file, warnings);
 }
