@@ -104,10 +104,10 @@ Json operation_json(const PatchOperation& operation) {
   return json;
 }
 
-/// The details of one entry: lists, of which items are left out when there are too many.
+/// The details of one entry: lists, whose last items are left out when all would take more than kMostDetailBytes.
 class Details {
  public:
-  /// `item(i)`: JSON of one of `count`.
+  /// Adds a list of `count` items. `item(i)`: the JSON of one.
   template <class Item>
   void add(const char* key, std::size_t count, const Item& item) {
     if (count == 0) return;
@@ -156,8 +156,8 @@ Json row_of(const Json& entry, const std::string& stem) {
 Json details_of(const Json& entry, const Journal& journal, const Json& kinds) {
   Details details;
   if (!kinds.empty()) details.json()["overlays"] = kinds;
-  for (const char* flag : {"resumed", "kept"})
-    if (const auto found = entry.find(flag); found != entry.end() && *found == true) details.json()[flag] = true;
+  if (const auto resumed = entry.find("resumed"); resumed != entry.end() && *resumed == true)
+    details.json()["resumed"] = true;
   const auto reasons = entry.find("reasons");
   if (reasons != entry.end() && reasons->is_array())
     details.add("reasons", reasons->size(), [&](std::size_t i) { return cut((*reasons)[i], kLongestText); });

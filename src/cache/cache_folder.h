@@ -1,5 +1,6 @@
 // What lies where a cache is to be written, and which of it may go: a cache is known by its content, sound or not, and
-// only files that write_cache() can have written are ever removed, by name. All else stays or moves along.
+// only files that write_cache() can have written are ever removed, by name. All else stays or moves along. Called by
+// write_cache.cpp and staged_folder.h, and for the outputs of commands (cli/options/).
 #pragma once
 #include <filesystem>
 #include <optional>

@@ -1,3 +1,4 @@
+// The manifest as JSON, both ways; and of cache.h options_hash() and read_manifest().
 #include "cache/manifest.h"
 
 #include <fcntl.h>

@@ -1,3 +1,5 @@
+// Keys of nodes and filters, from hits (node_programs.h) and from paths alone (append_keys() of shade.h), and the table
+// of programs by key (ProgramTable of shade.h).
 #include "color/node_programs.h"
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// Programs of the nodes of one block, as dense numbers, and batches of nodes with equal numbers: what shading and
-// compressing have in common, inside src/color.
+// The programs of the nodes of one block, as dense numbers, and batches of nodes with equal numbers: what shading
+// (block_shading.h) and compressing (compress/compress.cpp) have in common, inside src/color. Nodes with the same key
+// have the same program.
 #pragma once
 #include <map>
 #include <span>
@@ -10,9 +11,11 @@
 
 namespace relook {
 
+/// The key of a hit on an object, without lights and children.
 [[nodiscard]] NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside);
-/// The side is left open: it depends on the hit, not on the path.
+/// The key of a filter, as if light met it from outside: the caller sets `inside`, which depends on the hit.
 [[nodiscard]] NodeKey filter_key(const RayScene& scene, ObjectId id);
+/// Adds a light to a key if it reaches the node. `order`: its place in the light order.
 void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state);
 [[nodiscard]] NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node);
 
@@ -27,7 +30,8 @@ struct SignatureHash {
   }
 };
 
-/// Gives nodes dense program numbers within one block. Nodes, not filters, are restricted to a part of their colours.
+/// Gives nodes and filters dense numbers of programs. The programs of nodes, not of filters, are restricted to a part
+/// of their colours.
 class NodePrograms {
  public:
   NodePrograms(const RayScene& scene, ProgramTable& table, const ColorPart& part = {})
@@ -57,7 +61,7 @@ class NodePrograms {
   [[nodiscard]] static std::uint64_t light_bits(ShadowState state) {  // only how a light reaches the node counts
     return state == ShadowState::open ? 1 : state == ShadowState::filtered ? 2 : 0;
   }
-  /// `lights`: how many count, from the first.
+  /// `lights`: how many lights of the light order count, from the first.
   [[nodiscard]] Signature signature_of(const TreeBlock& block, const RayNode& node, std::size_t lights) const {
     if (node.object.is_none()) return {};
     std::uint64_t children = 0;
@@ -83,7 +87,7 @@ class NodePrograms {
   const RayScene& scene_;
   ProgramTable& table_;
   ColorPart part_;
-  std::size_t lamp_place_;  // of the part's only lamp in the light order
+  std::size_t lamp_place_;  // place of the part's only lamp in the light order; its length if there is none
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
   std::vector<BoundProgram> programs_;
   bool has_last_ = false;
