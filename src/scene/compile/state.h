@@ -1,6 +1,6 @@
 // A look document and the scene compiled from it, kept in step: after an edit only the entities that it touched, and
-// their users, are compiled again, and the result equals a compilation from scratch up to the order of ids. Owned by
-// whoever opens a scene or a cache (cli/), changed by edit/ alone.
+// their users, are compiled again, and the result equals a compilation from scratch up to the order of ids. Made when a
+// scene or a cache is opened (cli/input/), owned by the Replayer while it replays, changed by edit/ alone.
 #pragma once
 #include <memory>
 #include <string>

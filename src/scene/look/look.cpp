@@ -1,5 +1,6 @@
 // glTF to look document, make_look_document(): arrays become objects keyed by unique name, indices become names, every
-// default is filled in, what relook does not support is left out. Nodes that the active scene does not reach, too.
+// default is filled in, what relook does not support is left out, and so are nodes that the active scene does not
+// reach.
 #include "scene/look/look.h"
 
 #include "base/import_memory.h"

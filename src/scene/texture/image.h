@@ -1,6 +1,6 @@
 // Decoding of PNG, JPEG, Radiance HDR, OpenEXR and WebP bytes to mip pyramids: the format is told by the first bytes,
 // and size, framing and memory are checked before anything is decoded (by image_library.h). PyramidStore has what a
-// scene has decoded so far: filled by the compiler (compile/), by edits, and from a cache.
+// scene has decoded so far: filled by the compiler (compile/) and from a cache.
 #pragma once
 #include <cstdint>
 #include <map>

@@ -1,7 +1,7 @@
 // The framing of encoded images, checked before a decoder sees them, and reduced to what makes pixels: decoders unpack
 // colour profiles, Exif, IPTC and texts that nobody reads (a bad IPTC block crashes OpenImageIO 2.4), print to stderr
-// about damaged PNG files, and fill the missing end of a JPEG with grey. Bytes in, bytes out; called by image.cpp, and
-// by the importer for formats that are refused.
+// about damaged PNG files, and fill the missing end of a JPEG with grey. Bytes in, bytes out. Called by image.cpp; the
+// importer and the compiler ask for formats that are refused.
 #pragma once
 #include <cstdint>
 #include <string>
