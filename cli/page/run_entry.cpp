@@ -71,6 +71,14 @@ std::size_t frame_in_step(const Json& entry) {
   return 0;
 }
 
+/// At most `most` bytes of a text, whole characters, with "…" where it was cut.
+std::string cut_text(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  std::size_t end = most;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return std::string(text.substr(0, end)) + "…";
+}
+
 /// A value with its long texts and lists cut.
 Json cut(const Json& value, std::size_t longest, int depth = 0) {
   if (value.is_string()) return cut_text(value.get_ref<const std::string&>(), longest);
@@ -181,13 +189,6 @@ Json shown_head(const Json& head) {
                           "full_render_seconds", "cache_bytes", "cache_damage", "interrupted"})
     shown[key] = head.contains(key) ? cut(head.at(key), kLongestText) : Json(nullptr);
   return shown;
-}
-
-std::string cut_text(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string(text);
-  std::size_t end = most;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  return std::string(text.substr(0, end)) + "…";
 }
 
 }  // namespace relook

@@ -26,7 +26,4 @@ namespace relook {
 /// What report.json has above its steps, as far as the page shows it.
 [[nodiscard]] Json shown_head(const Json& head);
 
-/// At most `most` bytes of a text, whole characters, with "…" where it was cut.
-[[nodiscard]] std::string cut_text(std::string_view text, std::size_t most);
-
 }  // namespace relook

@@ -81,6 +81,17 @@ bool is_run(const fs::path& folder) {
   }
 }
 
+/// True for a folder that holds a cache, sound or not, of any version.
+bool looks_like_cache(const fs::path& path) {
+  if (is_manifest_of_cache(path / kManifestName)) return true;
+  std::error_code error;
+  bool is_cache = false;
+  for_each_entry(path, error, [&](const Entry& entry) {
+    is_cache = is_cache || (entry.is_own && starts_like_a_cache(path / entry.name));
+  });
+  return is_cache;
+}
+
 /// `error` is "no such file" when another program has put another folder here in this moment.
 Occupant what_folder_holds(const fs::path& path, std::error_code& error) {
   Occupant occupant;
@@ -175,16 +186,6 @@ Occupant occupant_of(const std::filesystem::path& path) {
     default:
       return is_other("is not a folder");
   }
-}
-
-bool looks_like_cache(const std::filesystem::path& path) {
-  if (is_manifest_of_cache(path / kManifestName)) return true;
-  std::error_code error;
-  bool is_cache = false;
-  for_each_entry(path, error, [&](const Entry& entry) {
-    is_cache = is_cache || (entry.is_own && starts_like_a_cache(path / entry.name));
-  });
-  return is_cache;
 }
 
 std::optional<std::filesystem::path> enclosing_cache(const std::filesystem::path& path) {

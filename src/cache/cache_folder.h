@@ -18,9 +18,6 @@ struct Occupant {
 /// Throws IoError for a folder that cannot be looked into.
 [[nodiscard]] Occupant occupant_of(const std::filesystem::path& path);
 
-/// True for a folder that holds a cache, sound or not, of any version.
-[[nodiscard]] bool looks_like_cache(const std::filesystem::path& path);
-
 /// The nearest of `path` itself and the folders above it that holds a cache. Links are followed, also to what is not
 /// there yet.
 [[nodiscard]] std::optional<std::filesystem::path> enclosing_cache(const std::filesystem::path& path);

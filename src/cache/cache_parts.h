@@ -2,7 +2,6 @@
 // group of tiles. Which there are, what they are called, and their bytes; for reading (cache.cpp) and writing
 // (write_cache.cpp).
 #pragma once
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,8 +14,6 @@
 namespace relook {
 
 enum class Part : std::uint8_t { look, geometry, textures, frame, paths, trees, tunnels };
-constexpr std::array<std::string_view, 7> kPartNames{"look.json", "geometry", "textures", "frame",
-                                                     "paths",     "trees",    "tunnels"};
 
 struct PartFile {
   Part part = Part::look;

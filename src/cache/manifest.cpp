@@ -58,6 +58,23 @@ Camera read_camera(const JsonView& view) {
   return camera;
 }
 
+Json camera_json(const Camera& camera) {
+  Json json{{"name", camera.name},
+            {"node", camera.node},
+            {"orthographic", camera.orthographic},
+            {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
+            {"right", vector_json(camera.right)},
+            {"up", vector_json(camera.up)},
+            {"forward", vector_json(camera.forward)},
+            {"half_width", camera.half_width},
+            {"half_height", camera.half_height},
+            {"near", camera.near},
+            {"width", camera.width},
+            {"height", camera.height}};
+  if (std::isfinite(camera.far)) json["far"] = camera.far;
+  return json;
+}
+
 Json storage_json(const StorageOptions& storage) {
   return {{"ray_trees_percent", storage.ray_trees_percent},
           {"disk_bytes", storage.disk_bytes ? Json(*storage.disk_bytes) : Json()},
@@ -170,23 +187,6 @@ void check_format(const Json& document) {
 }
 
 }  // namespace
-
-Json camera_json(const Camera& camera) {
-  Json json{{"name", camera.name},
-            {"node", camera.node},
-            {"orthographic", camera.orthographic},
-            {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
-            {"right", vector_json(camera.right)},
-            {"up", vector_json(camera.up)},
-            {"forward", vector_json(camera.forward)},
-            {"half_width", camera.half_width},
-            {"half_height", camera.half_height},
-            {"near", camera.near},
-            {"width", camera.width},
-            {"height", camera.height}};
-  if (std::isfinite(camera.far)) json["far"] = camera.far;
-  return json;
-}
 
 std::string manifest_text(const Manifest& manifest) {
   Json content = content_json(manifest);

@@ -32,7 +32,6 @@ struct Manifest {
   std::vector<CacheFile> files;  // by name
 };
 
-[[nodiscard]] Json camera_json(const Camera& camera);
 [[nodiscard]] std::string manifest_text(const Manifest& manifest);
 
 /// Reads and checks MANIFEST.json of a cache. `document`: null, or gets its JSON. Throws CacheDamage.

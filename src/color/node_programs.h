@@ -11,13 +11,8 @@
 
 namespace relook {
 
-/// The key of a hit on an object, without lights and children.
-[[nodiscard]] NodeKey surface_key(const RayScene& scene, ObjectId id, bool inside);
 /// The key of a filter, as if light met it from outside: the caller sets `inside`, which depends on the hit.
 [[nodiscard]] NodeKey filter_key(const RayScene& scene, ObjectId id);
-/// Adds a light to a key if it reaches the node. `order`: its place in the light order.
-void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state);
-[[nodiscard]] NodeKey key_of(const RayScene& scene, const TreeBlock& block, const RayNode& node);
 
 /// A short form of NodeKey that is cheap to make and compare: (material, flags), light states.
 struct Signature {

@@ -18,8 +18,6 @@
 
 namespace relook {
 
-inline constexpr std::int64_t kReportVersion = 1;
-
 /// The program's own version, "0.1.0".
 [[nodiscard]] std::string_view program_version();
 
@@ -116,8 +114,6 @@ struct RunReport {
 [[nodiscard]] Json report_head_json(const RunReport& report);
 /// An entry of `steps`.
 [[nodiscard]] Json step_json(const StepReport& step);
-/// The member `options`.
-[[nodiscard]] Json options_json(const RunReport& report);
 
 /// The class of two edits together, by the rule of classify(): for a drag as a whole.
 [[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);

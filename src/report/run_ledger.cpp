@@ -18,8 +18,7 @@ bool is_file(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, error);
 }
 
-}  // namespace
-
+/// The key of an entry. Throws InputError when it is none that step_json() makes.
 LedgerKey ledger_key(const Json& entry) {
   const JsonView view(entry, kReportName);
   const auto step = static_cast<std::uint32_t>(view.at("step").integer(0, kWholeStep));
@@ -28,6 +27,8 @@ LedgerKey ledger_key(const Json& entry) {
       return {step, static_cast<std::uint32_t>(number.integer(1, kWholeStep - 1))};
   return {step, kWholeStep};
 }
+
+}  // namespace
 
 RunLedger::RunLedger(std::filesystem::path run) : run_(std::move(run)) {
   read_report();

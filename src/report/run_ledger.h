@@ -20,8 +20,6 @@ namespace relook {
 /// A step, and within it the number of a frame of a drag or wedge or kWholeStep: whole steps come after their frames.
 using LedgerKey = std::pair<std::uint32_t, std::uint32_t>;
 inline constexpr std::uint32_t kWholeStep = std::numeric_limits<std::uint32_t>::max();
-/// The key of an entry. Throws InputError when it is none that step_json() makes.
-[[nodiscard]] LedgerKey ledger_key(const Json& entry);
 
 class RunLedger {
  public:
