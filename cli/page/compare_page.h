@@ -1,5 +1,5 @@
-// compare.html: the frames' figures, pictures of those that differ, and runs side by side. One file that needs nothing
-// else, no script in it; whatever comes from files is text.
+// The page of `relook compare` (compare.html): the frames' figures, pictures of those that differ, and runs side by
+// side. One file that needs nothing else, without scripts; whatever comes from files is text.
 #pragma once
 #include <string>
 

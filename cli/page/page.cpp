@@ -16,7 +16,7 @@ const PageAsset& asset(std::string_view name) {
   return *found;
 }
 
-/// 'sha256-...' as a policy names it.
+/// " 'sha256-...'", as a Content-Security-Policy names a script or style.
 std::string hash_source(const PageAsset& asset) {
   Bytes digest;
   for (std::size_t i = 0; i + 1 < asset.sha256.size(); i += 2)

@@ -1,6 +1,6 @@
 // A web page of one file that works from disk, offline: scripts and styles are built into the program and stand in the
 // page, admitted by their hashes (Content-Security-Policy); data stands in it as JSON, which nothing executes. Whatever
-// comes from scenes and journals is data, and scripts show it as text only.
+// comes from scenes and journals is data, and scripts show it as text only. Made by run_page.h and compare_page.h.
 #pragma once
 #include <string>
 #include <string_view>
@@ -14,7 +14,7 @@ namespace relook {
 
 struct Page {
   std::string title;                                      // any text
-  std::vector<std::string_view> styles, scripts;          // names of assets in this folder, in their order in the page
+  std::vector<std::string_view> styles, scripts;          // names of files in assets/, in their order in the page
   std::string body;                                       // HTML; what it holds of data is escaped
   std::vector<std::pair<std::string, std::string>> data;  // JSON as script_json() writes it, by its element's id
   bool has_files_beside = false;                          // scripts may load data scripts from beside the page
@@ -22,7 +22,7 @@ struct Page {
 
 [[nodiscard]] std::string page_text(const Page& page);
 
-/// An asset's text, such as the body of a page.
+/// The text of a file in assets/, such as the body of a page. Requires: it is built in.
 [[nodiscard]] std::string_view asset_text(std::string_view name);
 
 /// Text as HTML shows it, in elements and in quoted attributes.

@@ -1,4 +1,5 @@
-// The styles and scripts that are built into the program (embed.cmake).
+// The styles, scripts and bodies of pages that are built into the program: embed.cmake writes page_assets() from the
+// files in assets/. Seen by page.cpp alone.
 #pragma once
 #include <cstddef>
 #include <span>

@@ -1,5 +1,5 @@
 // What a run's page shows of one step at a time (run_entry.h), and the tiles that each frame brought: in chunks of 256
-// entries, in the page while there is room, else compressed in pixels/steps_*.js beside it.
+// entries, in the page while there is room, else compressed in pixels/steps_*.js beside it. Used by run_page.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -22,11 +22,11 @@ class PageDetails {
   [[nodiscard]] bool is_between_chunks() const { return entries_ == 0; }
   /// `sources`: the entry that each tile is from before the chunk's first entry, as PagePixels has it.
   void start_chunk(const std::vector<std::size_t>& sources);
-  /// `tiles`: what the pixels need, and all that is kept when texts are left out.
+  /// Adds the next entry. `tiles`: what the pixels need, which is kept when texts are left out.
   void add(Json details, const Json& tiles);
   void end_chunk();
 
-  /// From the page to files beside it.
+  /// Moves all chunks, and those to come, from the page to files beside it.
   void move_out();
   [[nodiscard]] bool is_beside() const { return is_beside_; }
   [[nodiscard]] std::size_t bytes_in_page() const { return is_beside_ ? 0 : bytes_; }
@@ -35,7 +35,7 @@ class PageDetails {
 
  private:
   struct Chunk {
-    std::string all, least;  // JSON; without texts
+    std::string all, least;  // JSON; the same without texts
   };
   void write_beside(const Chunk& chunk);
 

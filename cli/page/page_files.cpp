@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kFewestDigits = 5, kMostDigits = 9;
 
-/// The number that ends a text, which is cut off; none: it ends with something else, or with more digits than we write.
+/// Cuts off the number that ends a text and returns it; none: the text ends with something else, or with more digits
+/// than new_file() writes.
 std::optional<std::size_t> take_number(std::string_view& text) {
   const std::size_t last = text.find_last_not_of("0123456789");
   const std::size_t start = last == std::string_view::npos ? 0 : last + 1;
@@ -100,7 +101,7 @@ void PageFiles::keep_new() {
     std::filesystem::remove(folder_ / name, error);
     if (error) throw IoError((folder_ / name).string(), "cannot be removed: " + error.message());
   }
-  // Not when anything else is in it.
+  // Fails, as it should, when anything else is in the folder.
   if (!old_.empty()) std::filesystem::remove(folder_, error);
 }
 

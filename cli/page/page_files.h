@@ -1,6 +1,6 @@
 // The data scripts beside a run's page, pixels/*.js. Their names have the number of the page, which is one more than
 // that of the page before: until the new page is there, the old one finds its own files unchanged. Only files of such a
-// name that begin with one of our calls are ever removed.
+// name that begin with one of the calls below, or that write_file() left unfinished, are ever removed.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -28,7 +28,7 @@ class PageFiles {
   PageFiles& operator=(const PageFiles&) = delete;
 
   [[nodiscard]] std::size_t page_number() const { return page_number_; }
-  /// The path for a new file; makes its folder. `number`: of the entry or of the chunk.
+  /// The path for a new file of pixels or of details; makes its folder. `number`: of the entry or of the chunk.
   [[nodiscard]] std::filesystem::path new_pixels(std::size_t number) { return new_file("", number); }
   [[nodiscard]] std::filesystem::path new_steps(std::size_t number) { return new_file("steps_", number); }
   /// The page that uses the new files is there: removes those of earlier pages. Throws IoError.

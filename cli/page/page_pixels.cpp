@@ -83,8 +83,8 @@ void PagePixels::take(std::size_t entry, const std::string& stem, bool is_last, 
   keep(entry, is_last, room_bytes);
 }
 
-/// A quarter of what may be there is for the first frames, three quarters follow the frames; there is always room left
-/// for the last one.
+/// Of the share that follows the bytes of the frames, a quarter may be taken from the start, and three quarters as the
+/// frames come; room for the last frame is kept.
 bool PagePixels::fits_beside(std::size_t bytes, bool is_last) const {
   const std::uint64_t share =
       is_last ? frames_bytes_ / 2 : frames_bytes_ / 8 + std::min(read_bytes_, frames_bytes_) / 8 * 3;

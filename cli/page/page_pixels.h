@@ -1,6 +1,7 @@
 // Which frames of a run its page has the pixels of, and where: in the page while there is room, else in pixels/*.js
-// beside it, several frames to a file. Beside the page they take no more than half of the bytes of the frames and 6 MB,
-// spread over the run; what does not fit is left out whole, so that each frame that is there is right bit by bit.
+// beside it, several frames to a file. What lies beside the page takes no more than half of the bytes of the frames and
+// 6 MB, spread over the run; a frame that does not fit is left out whole, so that each frame that is there is right bit
+// by bit. Used by run_page.cpp.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -17,15 +18,15 @@
 
 namespace relook {
 
-/// What lies beside a page, pixels and details together, may take half of the bytes of the frames and these.
+/// What lies beside a page may take half of the bytes of the frames and these: pixels seven eighths, details one.
 inline constexpr std::uint64_t kFreeBesideBytes = 6'000'000;
 
-/// Files of records, several in each.
+/// Files beside the page, each with the records of several entries.
 class PixelBundles {
  public:
   explicit PixelBundles(PageFiles& files) : files_(&files) {}
   using Append = std::function<void(std::string_view)>;
-  /// `write` appends the record of an entry, piece by piece.
+  /// Adds the record of an entry, which `write` appends piece by piece.
   void add(std::size_t entry, const std::function<void(const Append&)>& write);
   void end_file();
   [[nodiscard]] const std::vector<std::size_t>& first_entries() const { return first_entries_; }
@@ -41,26 +42,28 @@ class PagePixels {
   /// `files` outlives this. `exposure`: stops, of thumbnails.
   PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files);
 
-  /// The frame of an entry. `room_bytes`: what all pixels may take in the page.
+  /// Takes the frame of the next entry. `room_bytes`: what all pixels may take in the page.
   void take(std::size_t entry, const std::string& stem, bool is_last, std::size_t room_bytes);
-  /// Whether the page has the pixels of the last entry taken, and the tiles that changed since the last one that it
-  /// has, as runs: [first, count, ...].
+  /// Whether the page has the pixels of the last entry taken.
   [[nodiscard]] bool has_last() const { return has_last_; }
+  /// The tiles of the last entry taken that differ from the frame that the page had before it, as runs: [first, count,
+  /// ...].
   [[nodiscard]] const std::vector<std::size_t>& last_tiles() const { return last_tiles_; }
-  /// The entry that each tile of the last frame that the page has is from, as runs: [count, entry, ...].
+  /// For the last frame that the page has, the entry that each tile is from, as runs: [count, entry, ...].
   [[nodiscard]] std::vector<std::size_t> sources() const;
   /// A small PNG file of the last entry taken.
   [[nodiscard]] Bytes thumbnail() { return run_.thumbnail(); }
 
-  /// From the page to files beside it.
+  /// Moves all records, and those to come, from the page to files beside it.
   void move_out();
   [[nodiscard]] std::size_t bytes_in_page() const { return is_beside_ ? bundles_.first_entries().size() * 7 : bytes_; }
-  /// After the last entry: width, height, channels, and the first entry of each file beside the page, or null.
+  /// After the last entry: width, height, channels, and `bundles`: the first entry of each file beside the page, or
+  /// null.
   [[nodiscard]] Json finish();
   /// JSON: a list of the frames, or null when they are beside the page.
   [[nodiscard]] std::string in_page() const;
   [[nodiscard]] bool is_beside() const { return is_beside_; }
-  /// What all files of frames/ have together.
+  /// Bytes of all files of frames/ together.
   [[nodiscard]] std::uint64_t frames_bytes() const { return frames_bytes_; }
 
  private:

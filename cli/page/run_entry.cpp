@@ -71,6 +71,14 @@ std::size_t frame_in_step(const Json& entry) {
   return 0;
 }
 
+/// At most `most` bytes of a text, whole characters, with "…" where it was cut.
+std::string cut_text(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  std::size_t end = most;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return std::string(text.substr(0, end)) + "…";
+}
+
 /// A value with its long texts and lists cut.
 Json cut(const Json& value, std::size_t longest, int depth = 0) {
   if (value.is_string()) return cut_text(value.get_ref<const std::string&>(), longest);
@@ -104,10 +112,10 @@ Json operation_json(const PatchOperation& operation) {
   return json;
 }
 
-/// The details of one entry: lists, of which items are left out when there are too many.
+/// The details of one entry: lists, whose last items are left out when all would take more than kMostDetailBytes.
 class Details {
  public:
-  /// `item(i)`: JSON of one of `count`.
+  /// Adds a list of `count` items. `item(i)`: the JSON of one.
   template <class Item>
   void add(const char* key, std::size_t count, const Item& item) {
     if (count == 0) return;
@@ -156,8 +164,8 @@ Json row_of(const Json& entry, const std::string& stem) {
 Json details_of(const Json& entry, const Journal& journal, const Json& kinds) {
   Details details;
   if (!kinds.empty()) details.json()["overlays"] = kinds;
-  for (const char* flag : {"resumed", "kept"})
-    if (const auto found = entry.find(flag); found != entry.end() && *found == true) details.json()[flag] = true;
+  if (const auto resumed = entry.find("resumed"); resumed != entry.end() && *resumed == true)
+    details.json()["resumed"] = true;
   const auto reasons = entry.find("reasons");
   if (reasons != entry.end() && reasons->is_array())
     details.add("reasons", reasons->size(), [&](std::size_t i) { return cut((*reasons)[i], kLongestText); });
@@ -180,13 +188,6 @@ Json shown_head(const Json& head) {
                           "full_render_seconds", "cache_bytes", "cache_damage", "interrupted"})
     shown[key] = head.contains(key) ? cut(head.at(key), kLongestText) : Json(nullptr);
   return shown;
-}
-
-std::string cut_text(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string(text);
-  std::size_t end = most;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  return std::string(text.substr(0, end)) + "…";
 }
 
 }  // namespace relook

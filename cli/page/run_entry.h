@@ -1,5 +1,6 @@
 // One entry of a run's report as its page has it: a short row for the list and the plots, which is always in the page,
-// and details, shown for one step at a time. Texts of scenes and journals can be of any length: here they are cut.
+// and details, shown for one step at a time. Texts of scenes and journals can be of any length: here they are cut. Used
+// by run_page.cpp; assets/report.js reads both.
 #pragma once
 #include <span>
 #include <string>
@@ -10,21 +11,19 @@
 
 namespace relook {
 
-/// Pointers to what rows have in numbers, in their order after the stem, whether it is a frame of a drag or a wedge,
-/// name and class.
+/// JSON pointers to the numbers of a row, in their order. Before them a row has the stem, 1 for a frame of a drag or
+/// wedge or 0, the name and the class.
 [[nodiscard]] std::span<const std::string_view> row_columns();
 
-/// "0003_01" of "frames/0003_01.exr" and "previews/0003_01.png". Throws InputError when an entry names anything else.
+/// "0003_01" of "frames/0003_01.exr" and "previews/0003_01.png". Throws InputError when entry `i` names anything else.
 [[nodiscard]] std::string stem_of(const Json& entry, std::size_t i);
 [[nodiscard]] Json row_of(const Json& entry, const std::string& stem);
 
-/// Reasons, selection and edit, kinds of overlays, where it is from: what is there of them. `kinds`: of overlays.
+/// Reasons, selection and edit, `overlays` (`kinds` of them) and whether the frame is `resumed`, as far as they are
+/// there.
 [[nodiscard]] Json details_of(const Json& entry, const Journal& journal, const Json& kinds);
 
 /// What report.json has above its steps, as far as the page shows it.
 [[nodiscard]] Json shown_head(const Json& head);
-
-/// At most `most` bytes of a text, whole characters, with "…" where it was cut.
-[[nodiscard]] std::string cut_text(std::string_view text, std::size_t most);
 
 }  // namespace relook

@@ -18,7 +18,8 @@
 namespace relook {
 namespace {
 
-constexpr std::size_t kDataBytes = 4'200'000;  // of the page; the rest is for scripts, styles and what stands around it
+constexpr std::size_t kOtherBytes = 800'000;                      // of scripts, styles and what stands around data
+constexpr std::size_t kDataBytes = kMostPageBytes - kOtherBytes;  // of the page
 constexpr std::size_t kThumbnailBytes = 1'000'000;  // of the data, for thumbnails
 
 /// What a page says of all entries, those included that it has no rows for.
@@ -44,7 +45,7 @@ class Pictures {
     const auto [place, is_new] = urls_.emplace(name, png_url(png));
     if (is_new) bytes_ += place->second.size() + name.size() + 6;
   }
-  /// They are files beside the page, and stay so.
+  /// From here on the page names their files and has none of them.
   void leave_out() {
     is_open_ = false;
     urls_.clear();
@@ -68,7 +69,7 @@ double exposure_of(const Json& head) {
 }
 
 /// Goes through the entries once. What the page has no room for leaves it in this order: overlays, pixels, thumbnails,
-/// details. Rows stay, and end when there is no room for them either.
+/// details. Rows never leave; once there is no room for a row, it and all later entries have none.
 class RunPage {
  public:
   explicit RunPage(const RunPageInput& input)
@@ -145,7 +146,7 @@ Json RunPage::take_frame(std::size_t i, const std::string& stem) {
 /// The kinds of overlays that a frame has: "touched" is "overlays/0003_touched.png".
 Json RunPage::take_overlays(const std::string& stem) {
   Json kinds = Json::array();
-  for (const char* kind : {"dependent", "touched", "groups", "tunnels"}) {
+  for (const char* kind : {"dependent", "touched", "groups"}) {
     const std::string name = "overlays/" + stem + "_" + kind + ".png";
     std::error_code error;
     if (!std::filesystem::is_regular_file(input_.folder / name, error)) continue;

@@ -1,6 +1,6 @@
 // report.html of a run: what report.json and the journal say, and the frames themselves, for a browser. Made from the
 // files of the run, one entry at a time, so that steps of an earlier run that were kept are in it, too, and that a long
-// run takes no more memory than a short one. Never larger than kMostPageBytes.
+// run takes no more memory than a short one. Never larger than kMostPageBytes. Called by cli/run/run_folder.h.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace relook {
 
-inline constexpr std::size_t kMostPageBytes = 5'000'000;
+inline constexpr std::size_t kMostPageBytes = 5'000'000;  // of report.html
 
 struct RunPageInput {
   const std::filesystem::path& folder;  // with the frames, previews and overlays that the entries name

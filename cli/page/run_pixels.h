@@ -1,5 +1,6 @@
 // The pixels of a run's frames for its page: R, G, B and A of the tiles in which a frame differs from the last one that
-// the page holds, compressed as in the files, and thumbnails made of them. Of all frames two are in memory.
+// the page holds, compressed as in the files, and thumbnails made of them. Two frames are in memory at a time. Used by
+// page_pixels.h.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ class RunPixels {
   /// before.
   void load(Bytes file, std::string_view name);
   [[nodiscard]] const FrameTiles& current() const { return current_; }
-  /// R, G, B and A, as far as the frames have them. In the order of the packed tiles.
+  /// R, G, B and A, as far as the frames have them, in the order in which packed tiles have them.
   [[nodiscard]] const std::vector<FrameTiles::Channel>& channels() const { return channels_; }
 
   /// Tiles in which the current frame differs from the one that was kept last; all of them before any was.
@@ -30,7 +31,7 @@ class RunPixels {
   /// From here on changed() compares with the current frame.
   void keep();
 
-  /// The current frame, small, as a PNG file. Quick when it is asked for with every frame.
+  /// The current frame, small, as a PNG file. Only tiles that differ from the last thumbnail are shrunk again.
   [[nodiscard]] Bytes thumbnail();
 
  private:

@@ -23,7 +23,7 @@ std::string libc_version() {
 }
 
 #if defined(__x86_64__)
-/// F16C, RDRND and LZCNT, by whose names clang 16's __builtin_cpu_supports knows no processor.
+/// F16C, RDRND and LZCNT, names that clang 16's __builtin_cpu_supports does not know.
 bool has_small_extensions() {
   unsigned a = 0, b = 0, c = 0, d = 0;
   if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & bit_F16C) == 0 || (c & bit_RDRND) == 0) return false;
@@ -31,9 +31,9 @@ bool has_small_extensions() {
 }
 #endif
 
-/// The tracer opens Embree with at most AVX2, so that machines with AVX-512 run the same kernels as others; which of
-/// them follows from more flags than the one they are called by. glibc has variants with fused multiply-add of libm's
-/// functions, for AVX2 and FMA4.
+/// The instructions by which Embree and libm choose their code. The tracer holds Embree to AVX2, so that machines with
+/// AVX-512 run the same kernels as others; Embree asks for more flags than AVX2's own before it takes these. glibc has
+/// variants of libm's functions with fused multiply-add, for AVX2 and FMA4.
 std::string instruction_set() {
 #if defined(__x86_64__)
   const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&

@@ -1,5 +1,6 @@
-// What decides the bits of a pixel beside the scene. Caches are exchangeable between programs and machines that agree
-// in all of it; a cache of another arithmetic is refused, since stored hits and colours would be mixed with other bits.
+// What decides the bits of a pixel beside the scene. Programs and machines that agree in all of it may exchange caches;
+// a cache of another arithmetic is refused, since stored hits and colours would be mixed with other bits. Written to
+// and compared with the manifest; `relook --version` prints it.
 #pragma once
 #include <cfloat>
 #include <cstdint>
@@ -39,8 +40,8 @@ struct Arithmetic {
 /// Throws InputError.
 [[nodiscard]] Arithmetic read_arithmetic(const JsonView& view);
 
-/// In which something written differs from this program: "written with Embree 3.12.1, this is 3.13.5"; "" if in
-/// nothing.
+/// How the arithmetic that something was written with differs from this program's: "written with Embree 3.12.1, this is
+/// 3.13.5"; "" if it does not.
 [[nodiscard]] std::string arithmetic_difference(const Arithmetic& written, const Arithmetic& own = own_arithmetic());
 
 /// "arithmetic 1, Embree 3.13.5, glibc 2.36, avx2"

@@ -1,3 +1,5 @@
+// Reading a cache: the manifest first, then every file, in parallel; all that is wrong is found, file by file, and
+// losses that follow from the scene are told from faults. write_cache.cpp is the other direction.
 #include "cache/cache.h"
 
 #include <algorithm>
@@ -20,14 +22,14 @@
 namespace relook {
 namespace {
 
-/// Everything that reading has found out so far.
+/// A cache that is being read: what has been read so far, and for whom.
 struct Reading {
   std::filesystem::path path;
   Manifest manifest;
   CacheContent content;
   std::shared_ptr<Assets> assets = counted_assets();
   std::vector<std::size_t> hits_of_path;
-  bool uses_trees = false;  // otherwise of trees nothing but the hash of the file is checked
+  bool uses_trees = false;  // frame and paths are sound; otherwise files of trees are only compared with their hashes
   CacheUsers users;
 };
 
@@ -38,7 +40,7 @@ struct Finding {
   bool is_lost = false;  // missing, or not the bytes that were written
 };
 
-/// The most that is believed of paths that are lost, for the tunnels around them.
+/// The most words that a lost path is believed to have had, for the check of the tunnels around its trees.
 constexpr std::size_t kWordsOfLostPath = 1024;
 
 void decode_tunnels(std::size_t group, BytesView bytes, Reading& reading) {
@@ -55,7 +57,7 @@ void decode_tunnels(std::size_t group, BytesView bytes, Reading& reading) {
     content.around_tiles[tile] = tunnels.around(tile);
     content.tunnels[tile] = std::move(of_tile);
   }
-  // Last, so that damage is told as such.
+  // Last, so that damage of the file is called damage.
   check_sound(tunnels.bound_to() == hashes_bound_to(reading.manifest, group), kOfOtherTrees);
 }
 
@@ -121,16 +123,16 @@ std::vector<Finding> read_parts(std::span<const PartFile> parts, Reading& readin
 
 bool is_fault(const Finding& finding) { return finding.answer.fault != CacheFault::none; }
 
-/// Can be made good from the rest of the cache.
+/// Can the file be made good from the rest of the cache?
 bool is_loss(const Finding& finding) {
-  // Of tunnels alone nothing but time depends, if they are of other ray trees they are none.
+  // Nothing but time depends on tunnels; those of other ray trees count as lost.
   if (finding.part.part == Part::tunnels) return finding.answer.fault != CacheFault::unreadable;
   const bool follows_from_scene =
       finding.part.part == Part::frame || finding.part.part == Part::paths || finding.part.part == Part::trees;
   return finding.is_lost && follows_from_scene && finding.answer.fault != CacheFault::unreadable;
 }
 
-/// What is to be done about losses, and nothing left in `content` of what is lost.
+/// What has to be traced or built again. Clears in `content` what is lost.
 CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& content) {
   CacheLosses losses;
   std::set<std::size_t> tiles, tunnels;
@@ -163,7 +165,7 @@ CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& cont
 
 constexpr std::size_t kFrame = 3, kPaths = 4, kFirstTrees = 5;  // of parts_of(), where the scene comes first
 
-/// Frame, paths and trees. Trees are checked against the paths, and take over pixels of the frame.
+/// Frame and paths, then trees, which are checked against the paths and take over pixels of the frame, and tunnels.
 std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& reading) {
   Image& image = reading.content.image;
   require(parts[kFrame].part == Part::frame && parts[kPaths].part == Part::paths, "parts have their places");
@@ -185,7 +187,7 @@ std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& readin
   return findings;
 }
 
-/// Reads everything that can be read; what is wrong with it, in the order of the files.
+/// Reads everything that can be read. Returns what is wrong, in the order of the files.
 std::vector<Finding> read_everything(const std::filesystem::path& path, Reading& reading) {
   reading.path = path;
   try {
@@ -289,7 +291,7 @@ CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content,
 
 namespace {
 
-/// Everything below a cache that its manifest does not name. Without a manifest nothing is told apart.
+/// Counts the files below a cache and reports those that its manifest does not name, if there is a manifest.
 void look_for_strays(const std::filesystem::path& path, const Manifest& manifest, CacheReport& report) {
   const auto find = [&](const std::string& finding, CacheAnswer answer) {
     report.findings.push_back(finding);

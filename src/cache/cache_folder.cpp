@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a folder and of the folders in it.
+/// What lies in a cache's folder or in one of its inner folders.
 struct Entry {
   std::string name;  // relative to the folder
   bool is_own = false, is_system = false;
@@ -51,7 +51,7 @@ bool is_inner_folder(const fs::path& folder, const Entry& entry) {
   return std::ranges::find(kInnerFolders, entry.name) != kInnerFolders.end() && is_folder(folder / entry.name);
 }
 
-/// Calls visit(entry) for everything in a folder, where a cache's inner folders count as what is in them.
+/// Calls visit(entry) for everything in a cache's folder; instead of an inner folder, for everything in that.
 void for_each_entry(const fs::path& folder, std::error_code& error, const std::function<void(const Entry&)>& visit) {
   for (const Entry& entry : entries_of(folder, "", error)) {
     if (!is_inner_folder(folder, entry)) {
@@ -64,7 +64,7 @@ void for_each_entry(const fs::path& folder, std::error_code& error, const std::f
   }
 }
 
-/// A file of sections says so at its start, if nothing else of a cache is left.
+/// Does a file begin like a .rlk file? That tells a cache of which nothing else is left.
 bool starts_like_a_cache(const fs::path& file) {
   std::array<char, kContainerMagic.size()> start{};
   std::ifstream stream(file, std::ios::binary);
@@ -81,7 +81,18 @@ bool is_run(const fs::path& folder) {
   }
 }
 
-/// `error`: no such file where another program has put another folder here in this moment.
+/// True for a folder that holds a cache, sound or not, of any version.
+bool looks_like_cache(const fs::path& path) {
+  if (is_manifest_of_cache(path / kManifestName)) return true;
+  std::error_code error;
+  bool is_cache = false;
+  for_each_entry(path, error, [&](const Entry& entry) {
+    is_cache = is_cache || (entry.is_own && starts_like_a_cache(path / entry.name));
+  });
+  return is_cache;
+}
+
+/// `error` is "no such file" when another program has put another folder here in this moment.
 Occupant what_folder_holds(const fs::path& path, std::error_code& error) {
   Occupant occupant;
   std::string own;
@@ -104,7 +115,7 @@ Occupant what_folder_holds(const fs::path& path, std::error_code& error) {
   return occupant;
 }
 
-/// What is left of a link after it and what follows it are put together.
+/// `path` as an absolute one with all links followed, also those to what is not there yet.
 fs::path through_links(const fs::path& path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
@@ -129,7 +140,7 @@ fs::path through_links(const fs::path& path) {
   return place;
 }
 
-/// Moves what is not there already; of folders nothing but their name is looked at.
+/// Moves a file or folder unless `to` is there already.
 void move_entry(const fs::path& from, const fs::path& to) {
   std::error_code ignored;
   if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0 || errno == EEXIST) return;
@@ -175,16 +186,6 @@ Occupant occupant_of(const std::filesystem::path& path) {
     default:
       return is_other("is not a folder");
   }
-}
-
-bool looks_like_cache(const std::filesystem::path& path) {
-  if (is_manifest_of_cache(path / kManifestName)) return true;
-  std::error_code error;
-  bool is_cache = false;
-  for_each_entry(path, error, [&](const Entry& entry) {
-    is_cache = is_cache || (entry.is_own && starts_like_a_cache(path / entry.name));
-  });
-  return is_cache;
 }
 
 std::optional<std::filesystem::path> enclosing_cache(const std::filesystem::path& path) {

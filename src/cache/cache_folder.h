@@ -1,5 +1,6 @@
 // What lies where a cache is to be written, and which of it may go: a cache is known by its content, sound or not, and
-// only files that write_cache() can have written are ever removed, by name. All else stays or moves along.
+// only files that write_cache() can have written are ever removed, by name. All else stays or moves along. Called by
+// write_cache.cpp and staged_folder.h, and for the outputs of commands (cli/options/).
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -16,9 +17,6 @@ struct Occupant {
 };
 /// Throws IoError for a folder that cannot be looked into.
 [[nodiscard]] Occupant occupant_of(const std::filesystem::path& path);
-
-/// True for a folder that holds a cache, sound or not, of any version.
-[[nodiscard]] bool looks_like_cache(const std::filesystem::path& path);
 
 /// The nearest of `path` itself and the folders above it that holds a cache. Links are followed, also to what is not
 /// there yet.

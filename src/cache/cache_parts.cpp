@@ -1,6 +1,7 @@
 #include "cache/cache_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 
 #include "base/error.h"
@@ -19,6 +20,8 @@ std::vector<PartFile> parts_of(const CacheContent& content) {
 }
 
 std::string stem(const PartFile& part) {
+  constexpr std::array<std::string_view, 7> kPartNames{"look.json", "geometry", "textures", "frame",
+                                                       "paths",     "trees",    "tunnels"};
   if (part.part == Part::look) return "look.json";
   std::string name(kPartNames[static_cast<std::size_t>(part.part)]);
   if (part.part == Part::trees || part.part == Part::tunnels) {

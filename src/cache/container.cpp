@@ -40,9 +40,8 @@ T value_at(BytesView bytes, std::size_t offset) {
   return value;
 }
 
-/// Can stored bytes unpack to so many? Their frame says how many they are, and none makes more than a block, 128 KiB,
-/// of 4 bytes: a table entry that says otherwise is not believed.
-/// `start`: their first bytes, up to kFrameHeaderBytes.
+/// Can `stored_bytes` of zstd unpack to `raw_bytes`, as a table entry says? Their frame says to how many they do, and 4
+/// bytes make no more than a block of 128 KiB. `start`: their first bytes, up to kFrameHeaderBytes.
 bool can_unpack_to(BytesView start, std::uint64_t stored_bytes, std::uint64_t raw_bytes) {
   constexpr std::uint64_t kBlockBytes = 128 << 10, kSmallestBlock = 4;
   return ZSTD_getFrameContentSize(start.data(), start.size()) == raw_bytes &&
@@ -54,7 +53,7 @@ void require_memory(const std::string& section, std::uint64_t raw_bytes) {
   require_import_memory(raw_bytes, "", "section " + printable(section) + " of the cache");
 }
 
-/// Byte k of every value together: high bytes of floats and indices repeat, low ones do not.
+/// Puts byte k of every value together: high bytes of floats and indices repeat, low ones do not.
 void group_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
   const std::size_t count = in.size() / stride;
   for (std::size_t k = 0; k < stride; ++k)
@@ -79,9 +78,9 @@ void ungroup_words(const std::byte* in, std::size_t group_bytes, std::size_t cou
 void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
   const std::size_t count = in.size() / stride;
   const std::byte* next = in.data();
-  // Most columns: in one go, which the compiler vectorises.
+  // Most columns have values of one word: one loop, which the compiler vectorises.
   if (stride == kWord) return ungroup_words<kWord>(next, count, count, out);
-  constexpr std::size_t kColor = 4 * kWord, kBlock = 256;  // values that stay in the cache
+  constexpr std::size_t kColor = 4 * kWord, kBlock = 256;  // of values, whose bytes stay in the processor's cache
   if (stride == kColor) {
     for (std::size_t i = 0; i < count; i += kBlock)
       for (std::size_t word = 0; word < kColor; word += kWord)
@@ -92,8 +91,8 @@ void ungroup_bytes(BytesView in, std::uint32_t stride, std::byte* out) {
     for (std::size_t i = 0; i < count; ++i) out[i * stride + k] = *next++;
 }
 
-/// A section of values wider than a byte, unpacked block by block: no second copy of all of it.
-/// False: it does not unpack to as many bytes.
+/// Unpacks a section of values wider than a byte block by block, so that there is no second copy of all of it. False:
+/// it does not unpack to as many bytes as `out` has.
 bool unpack_grouped(BytesView stored, std::uint32_t stride, std::span<std::byte> out) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
   if (context == nullptr) throw std::bad_alloc();

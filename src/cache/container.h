@@ -1,6 +1,7 @@
-// One .rlk file of a cache: a header, a table of sections, the sections (FORMAT.md). Every section carries its hash and
-// its size before compression; a file whose header says another version, scene or options is told apart from a damaged
-// one. The only file pair that sees zstd.
+// One .rlk file of a cache: a header, a table of sections, the sections (FORMAT.md). Every section has its hash and its
+// size before compression in the table; a file whose header says another version, scene or options is told apart from a
+// damaged one. Columns of values in, bytes out, and back; what the sections are, the *_parts files know. The only file
+// pair that sees zstd.
 #pragma once
 #include <cstdint>
 #include <cstring>
@@ -20,7 +21,7 @@ namespace relook {
 inline constexpr std::uint32_t kCacheFormat = 5;
 inline constexpr std::string_view kContainerMagic = "RLKCACHE";  // how every .rlk file begins
 
-/// Which cache a file belongs to: XXH3-128 in hexadecimal of the scene and of the options.
+/// Which cache a file belongs to: the XXH3-128, in hexadecimal, of its scene and of its options.
 struct CacheIdentity {
   std::string scene_hash, options_hash;
 };
@@ -41,7 +42,7 @@ inline constexpr bool is_plain = std::is_standard_layout_v<T>&& std::is_triviall
 
 class ContainerWriter {
  public:
-  /// Adds a section. `stride`: size of one value; its bytes are grouped by significance before compression.
+  /// Adds a section. `stride`: bytes of one value, 1 to 64; before compression byte k of all values is put together.
   void add(std::string_view name, BytesView raw, std::uint32_t stride = 1);
   template <class T>
   void add_column(std::string_view name, const std::vector<T>& values, std::uint32_t stride) {
@@ -60,13 +61,14 @@ class ContainerWriter {
   std::vector<Section> sections_;
 };
 
-/// Where the bytes of a file are: in memory, or on disk, of so many bytes, to be read as they are asked for.
+/// The bytes of a file: in memory, or on disk, from where they are read as they are asked for.
 class ByteSource {
  public:
   explicit ByteSource(BytesView bytes) : size_(bytes.size()), source_(bytes) {}
   ByteSource(std::filesystem::path file, std::uint64_t size) : size_(size), source_(std::move(file)) {}
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Requires: they are within the size. `copy`: holds them if they come from disk. Throws CacheDamage.
+  /// Bytes [offset, offset + count). `copy`: holds them if they come from disk. Requires: they are within size().
+  /// Throws CacheDamage.
   [[nodiscard]] BytesView bytes(std::uint64_t offset, std::uint64_t count, Bytes& copy) const;
 
  private:
@@ -78,7 +80,7 @@ class ByteSource {
 /// more than --import-memory.
 class ContainerReader {
  public:
-  /// What is in memory must outlive the reader.
+  /// A file that is in memory must outlive the reader.
   ContainerReader(ByteSource file, const CacheIdentity& identity);
   ContainerReader(BytesView file, const CacheIdentity& identity) : ContainerReader(ByteSource(file), identity) {}
 
@@ -107,7 +109,7 @@ class ContainerReader {
     std::uint32_t codec = 0, stride = 1;
     std::uint64_t raw_bytes = 0, stored_bytes = 0, offset = 0, hash = 0;
   };
-  /// `start`: header, table and its hash.
+  /// `start`: the file up to the hash behind the section table.
   void read_header(BytesView start, const CacheIdentity& identity);
   void read_table(BytesView start, std::uint32_t count);
   [[nodiscard]] const Section& find(std::string_view name) const;

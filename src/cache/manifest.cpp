@@ -1,3 +1,4 @@
+// The manifest as JSON, both ways; and of cache.h options_hash() and read_manifest().
 #include "cache/manifest.h"
 
 #include <fcntl.h>
@@ -55,6 +56,23 @@ Camera read_camera(const JsonView& view) {
   camera.width = static_cast<std::uint32_t>(view.at("width").integer(1, kLargestSide));
   camera.height = static_cast<std::uint32_t>(view.at("height").integer(1, kLargestSide));
   return camera;
+}
+
+Json camera_json(const Camera& camera) {
+  Json json{{"name", camera.name},
+            {"node", camera.node},
+            {"orthographic", camera.orthographic},
+            {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
+            {"right", vector_json(camera.right)},
+            {"up", vector_json(camera.up)},
+            {"forward", vector_json(camera.forward)},
+            {"half_width", camera.half_width},
+            {"half_height", camera.half_height},
+            {"near", camera.near},
+            {"width", camera.width},
+            {"height", camera.height}};
+  if (std::isfinite(camera.far)) json["far"] = camera.far;
+  return json;
 }
 
 Json storage_json(const StorageOptions& storage) {
@@ -169,23 +187,6 @@ void check_format(const Json& document) {
 }
 
 }  // namespace
-
-Json camera_json(const Camera& camera) {
-  Json json{{"name", camera.name},
-            {"node", camera.node},
-            {"orthographic", camera.orthographic},
-            {"eye", {camera.eye.x, camera.eye.y, camera.eye.z}},
-            {"right", vector_json(camera.right)},
-            {"up", vector_json(camera.up)},
-            {"forward", vector_json(camera.forward)},
-            {"half_width", camera.half_width},
-            {"half_height", camera.half_height},
-            {"near", camera.near},
-            {"width", camera.width},
-            {"height", camera.height}};
-  if (std::isfinite(camera.far)) json["far"] = camera.far;
-  return json;
-}
 
 std::string manifest_text(const Manifest& manifest) {
   Json content = content_json(manifest);

@@ -1,5 +1,6 @@
-// MANIFEST.json: what a cache directory must consist of, written last. It carries its own hash and is compared with its
-// canonical text, so that no byte of it can change unnoticed.
+// MANIFEST.json: what a cache's folder must consist of, written last. It carries its own hash and is compared with its
+// canonical text, so that no byte of it can change unnoticed. Read before anything else of a cache: nothing below it is
+// believed that it does not name.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -31,16 +32,16 @@ struct Manifest {
   std::vector<CacheFile> files;  // by name
 };
 
-[[nodiscard]] Json camera_json(const Camera& camera);
 [[nodiscard]] std::string manifest_text(const Manifest& manifest);
 
-/// Reads and checks MANIFEST.json of a cache directory. Throws CacheDamage.
+/// Reads and checks MANIFEST.json of a cache. `document`: null, or gets its JSON. Throws CacheDamage.
 [[nodiscard]] Manifest load_manifest(const std::filesystem::path& cache, Json* document = nullptr);
 
-/// Reads one file of a cache and compares it with its entry. Throws CacheDamage.
+/// Reads one file of a cache. Throws CacheDamage unless it has as many bytes as its entry says; to compare its hash is
+/// left to the caller.
 [[nodiscard]] Bytes load_file(const std::filesystem::path& cache, const CacheFile& file);
 
-/// Everything but the files.
+/// The manifest of a cache with this content, still without `files`.
 [[nodiscard]] Manifest manifest_of(const CacheContent& content);
 
 /// Does a file say that it is the manifest of a cache, whatever its version and however damaged the rest?

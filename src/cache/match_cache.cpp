@@ -1,4 +1,5 @@
-// Is a cache that is there already the one that is asked for? In words, what it has otherwise.
+// match_cache() of cache.h: is the cache that is there the one that `preprocess` would write? Compared by manifest and
+// by the hashes of all files; what it has otherwise is said in words.
 #include <algorithm>
 #include <sstream>
 
@@ -16,7 +17,7 @@ std::string number(double value) {
   return text.str();
 }
 
-/// Through the same eye; how wide it sees follows from the resolution, too.
+/// The same camera, whatever the resolution, on which its extent depends, too.
 bool same_view(const Camera& a, const Camera& b) {
   const bool same_size = a.width == b.width && a.height == b.height;
   const bool same_extent = a.half_width == b.half_width && a.half_height == b.half_height;

@@ -1,4 +1,4 @@
-// What a cache has, counted (Table 2 of the paper).
+// count_pieces() of cache.h: how many paths, groups, ray trees and tunnels a cache has (Table 2 of the paper).
 #include "base/parallel.h"
 #include "cache/cache.h"
 #include "region/path_groups.h"

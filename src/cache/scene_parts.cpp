@@ -162,7 +162,7 @@ struct GeometryColumns {
   Cutter<float> joint_weights;
 };
 
-/// Columns that are there and not as long as the vertices are damage.
+/// Reads a mesh's morph targets. A column is empty or as long as the positions; anything else is damage.
 void read_targets(const JsonView& entries, GeometryColumns& columns, Mesh& mesh) {
   entries.require_array();
   mesh.targets.reserve(entries.size());
@@ -184,7 +184,8 @@ void read_targets(const JsonView& entries, GeometryColumns& columns, Mesh& mesh)
   }
 }
 
-/// As many joints for each vertex, and of their weights the sum that the importer makes.
+/// Reads a mesh's joints and weights: as many for each vertex, and no weight that makes numbers too large. Their sums
+/// are not looked at.
 void read_joints(const JsonView& entry, GeometryColumns& columns, Mesh& mesh) {
   const std::uint64_t count = size_at(entry, "joints");
   mesh.joints = columns.joints.take(count);
@@ -223,7 +224,7 @@ Mesh read_mesh(const JsonView& entry, GeometryColumns& columns) {
   return mesh;
 }
 
-/// As make_look_document() leaves them: edits look cameras up by index and by name.
+/// Checks that cameras have the members that make_look_document() gives them: edits look them up by index and by name.
 Json read_cameras(const JsonView& cameras) {
   cameras.require_object();
   for (const auto& [name, unused] : cameras.value().items()) {
@@ -255,7 +256,7 @@ void read_names(const JsonView& names, LookDocument& document, Assets& assets) {
   document.file = names.at("file").text();
 }
 
-/// Matrices of owners that `entries` list, by their names in `key`.
+/// Reads the matrices of the nodes or skins that `entries` list, whose names stand in `key`.
 void read_matrices(const JsonView& entries, const char* key, Cutter<Transform> matrices,
                    std::map<std::string, std::vector<Transform>, std::less<>>& of_owners) {
   entries.require_array();
@@ -266,7 +267,7 @@ void read_matrices(const JsonView& entries, const char* key, Cutter<Transform> m
   matrices.finish();
 }
 
-/// Not as meshes are kept, which share a vertex's columns: a target may have fewer of them.
+/// The columns of all meshes' morph targets and joints, which have lengths of their own.
 struct DeformingColumns {
   std::vector<Imath::V3f> positions, normals, tangents;
   std::vector<std::uint16_t> joints;

@@ -1,5 +1,6 @@
-// The scene side of a cache as files: look document, geometry, textures. Each encode_ has its decode_, which checks
-// every index, count and number and throws CacheDamage.
+// The scene side of a cache as files: look document, geometry, textures (texture_parts.cpp). Each encode_ has its
+// decode_, which checks every index, count and number and throws CacheDamage; what entities say is for look_check.h to
+// check.
 #pragma once
 #include <string>
 
@@ -13,7 +14,7 @@ namespace relook {
 [[nodiscard]] Bytes encode_textures(const Assets& assets, const PyramidStore& pyramids, const CacheIdentity& identity);
 
 void decode_look(BytesView file, LookDocument& document);
-/// Meshes, names, cameras and instances.
+/// Meshes, names, cameras, instances and skins.
 void decode_geometry(BytesView file, const CacheIdentity& identity, LookDocument& document, Assets& assets);
 void decode_textures(BytesView file, const CacheIdentity& identity, Assets& assets, PyramidStore& pyramids);
 

@@ -1,6 +1,7 @@
 // A cache's folder, filled under a temporary name beside its final one: it appears there whole, or not at all. The
 // temporary folder is locked while its writer lives, so that those of killed writers are told apart and removed. Only
-// files of caches are ever removed (cache/cache_folder.h); a folder in which anything else is found stays.
+// files of caches are ever removed (cache/cache_folder.h); a folder in which anything else is found stays. Used by
+// write_cache(), and by require_writable() to find out early.
 #pragma once
 #include <filesystem>
 #include <functional>

@@ -1,5 +1,6 @@
 // The tunnels of a cache, read tile by tile when a replay first needs them. A file that is damaged, or of other ray
 // trees than the cache's, is as good as none: its tiles' tunnels are worked out anew. Safe to use from several threads.
+// Used by ImageRegions (image/regions.h).
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -14,16 +15,16 @@ namespace relook {
 class TunnelReader;
 struct Manifest;
 
-/// What a path table allows of the tunnels around trees with its paths.
+/// What tunnels around trees with the paths of a table can be: for the checks of stored ones.
 struct PathBounds {
-  std::size_t count = 0;       // of its paths
-  std::size_t most_words = 0;  // of a path, and so at least its nodes
+  std::size_t count = 0;       // how many paths there are
+  std::size_t most_words = 0;  // of the longest path; no tree has more nodes
 };
 [[nodiscard]] PathBounds bounds_of(const PathTable& paths);
 
 class StoredTunnels {
  public:
-  /// Null if the cache has none. `manifest`, `paths`: by which, and which, the image has been read.
+  /// Null if the cache has no tunnels. `manifest`, `paths`: those of the image that has been read.
   [[nodiscard]] static std::shared_ptr<StoredTunnels> of_cache(const std::filesystem::path& path,
                                                                std::shared_ptr<const Manifest> manifest,
                                                                const PathTable& paths);
@@ -34,10 +35,11 @@ class StoredTunnels {
   /// The next three throw IoError where a file may not be opened.
   /// Around all tunnels of a tile; none if they cannot be read.
   [[nodiscard]] std::optional<Sections> around(std::size_t tile);
-  /// Bytes of a tile's tunnels, about; none: they are not stored.
+  /// Bytes of a tile's tunnels before compression, 0 if they are damaged; none: they are not stored.
   [[nodiscard]] std::optional<std::uint64_t> bytes(std::size_t tile);
+  /// A tile's tunnels; none if they are not stored or cannot be read.
   [[nodiscard]] std::optional<TileTunnels> read(std::size_t tile);
-  /// What could not be read since the last call, one a file.
+  /// What could not be read since the last call, one answer a file; each file is reported once.
   [[nodiscard]] std::vector<CacheAnswer> take_faults();
 
  private:

@@ -1,4 +1,4 @@
-// textures-<hash>.rlk: the encoded images, for edits that use them anew, and the pyramids made so far.
+// textures-<hash>.rlk: the encoded images, for edits that show them for the first time, and the pyramids made so far.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ Json pyramid_entry(const std::string& image, bool color, const TexturePyramid& p
           {"levels", std::move(levels)}};
 }
 
-/// The levels and their offsets in texels; each half the size of the one before.
+/// Reads the sizes of the levels, each half of the one before. `texels`: adds up those of all levels.
 std::vector<TexturePyramid::Level> read_levels(const JsonView& view, std::uint64_t& texels) {
   constexpr std::int64_t kLargestSide = std::int64_t{1} << 28;
   view.require_array();
@@ -67,7 +67,7 @@ std::shared_ptr<const TexturePyramid> read_pyramid(const JsonView& entry, const 
   return kept_with(std::move(share), std::move(pyramid));
 }
 
-/// Distinct images by their bytes' address: images that share bytes share a section.
+/// Numbers of the distinct images, by the address of their bytes: images that share bytes share a section.
 using BlobNumbers = std::map<const Bytes*, std::size_t>;
 
 Json image_entries(const Assets& assets, BlobNumbers& blobs) {

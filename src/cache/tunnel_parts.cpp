@@ -80,7 +80,8 @@ TunnelReader::TunnelReader(const ByteSource& file, const CacheIdentity& identity
   }
 }
 
-/// Each section has a node of a sample's tree in it, or is where the primary rays of a tunnel leave.
+/// Throws CacheDamage for more sections than there can be: each has a node of some tree in it, or is a tunnel's section
+/// of the eye. `first`, `last`: the tiles [first, last) that they are of.
 void TunnelReader::check_sections(std::uint64_t sections, std::uint64_t tunnels, std::size_t first,
                                   std::size_t last) const {
   std::uint64_t samples = 0;

@@ -1,5 +1,6 @@
-// Tunnels of a group of tiles as a file of a cache: a section for each column of each tile, so that one tile is read
-// without the others. What follows from the cells is not stored.
+// The tunnels of a group of tiles as a file of a cache: a section for each column of each tile, so that one tile is
+// read without the others. Of tunnels that follow from the cells, only those around whole tiles are stored. Written by
+// write_cache.cpp; read whole by cache.cpp, tile by tile by stored_tunnels.h.
 #pragma once
 #include <string>
 
@@ -9,21 +10,21 @@
 
 namespace relook {
 
-/// `bound_to`: 32 digits of the file of the group's ray trees and 32 of that of the paths: their hashes.
+/// `bound_to`: the hashes of the files of the group's ray trees and of the paths, 64 digits, see hashes_bound_to().
 [[nodiscard]] Bytes encode_tunnels(const CacheContent& content, std::size_t group, const CacheIdentity& identity,
                                    const std::string& bound_to);
 
 /// The tunnels of a group, tile by tile. Throws CacheDamage for what cannot be tunnels.
 class TunnelReader {
  public:
-  /// `shape`, `camera`, `samples`, `paths`: of the cache. What is in memory must outlive the reader.
+  /// `shape`, `camera`, `samples`, `paths`: the cache's. A file that is in memory must outlive the reader.
   TunnelReader(const ByteSource& file, const CacheIdentity& identity, const StorageOptions& shape, const Camera& camera,
                std::uint32_t samples, std::size_t group, const PathBounds& paths);
   [[nodiscard]] const std::string& bound_to() const { return bound_to_; }
   /// The next three are for a tile of the image that is in the group.
   [[nodiscard]] const Sections& around(std::size_t tile) const { return around_[tile - first_]; }
   [[nodiscard]] bool has(std::size_t tile) const { return kept_[tile - first_] == 1; }
-  /// Of its columns, before compression. Requires: has(tile).
+  /// Bytes of the tile's columns before compression. Requires: has(tile).
   [[nodiscard]] std::uint64_t raw_bytes(std::size_t tile) const;
   /// Requires: has(tile).
   [[nodiscard]] TileTunnels tunnels(std::size_t tile) const;
@@ -35,7 +36,7 @@ class TunnelReader {
   Camera camera_;
   std::uint32_t samples_;
   PathBounds paths_;
-  std::vector<std::uint8_t> levels_;  // of the cells of the group's tiles
+  std::vector<std::uint8_t> levels_;  // [tiles of the group]: see cell_levels()
   std::string bound_to_;
   std::vector<std::uint8_t> kept_;
   std::vector<Sections> around_;

@@ -1,4 +1,4 @@
-// Writing a cache: encoding its parts, fitting them to a disk, publishing the folder.
+// Writing a cache: encoding its parts, fitting them to --disk (paper 4.3), publishing the folder.
 #include <algorithm>
 #include <functional>
 #include <iterator>
@@ -26,7 +26,7 @@ namespace {
 struct Dispensable {
   PartFile part;
   std::uint64_t with = 0, without = 0;  // bytes of its file
-  double seconds = 0;                   // to have it back, times how likely a tunnel is met
+  double seconds = 0;                   // to rebuild it; of tunnels times their area, by which changes touch them
   [[nodiscard]] std::uint64_t saved() const { return with - std::min(without, with); }
   [[nodiscard]] double weight() const { return seconds / static_cast<double>(saved() + 1); }
 };
@@ -57,7 +57,7 @@ Dispensable take_hits(CacheContent& content, const CacheIdentity& identity, cons
   return option;
 }
 
-/// `areas`: see fit_to_disk(). Comes before the hits are taken.
+/// `areas`: the `tunnel_areas` of fit_to_disk(). Requires: the group's hits are still there.
 Dispensable take_tunnels(CacheContent& content, const CacheIdentity& identity, const PartFile& part,
                          std::span<const double> areas, Taken& taken) {
   Dispensable option{part, file_bytes(content, identity, part)};
@@ -116,7 +116,7 @@ void fit_to_disk(CacheContent& content, std::uint64_t bytes, std::span<const dou
 
 namespace {
 
-/// Of tunnels: `manifest` has the files that they are bound to.
+/// Requires: for tunnels, manifest.files has the files that they are bound to.
 CacheFile write_part(const std::filesystem::path& folder, const PartFile& part, const CacheContent& content,
                      const Manifest& manifest) {
   const Bytes bytes = part.part == Part::tunnels ? encode_tunnels(content, part.group, manifest.identity,

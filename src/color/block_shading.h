@@ -1,5 +1,5 @@
-// What all evaluation of whole blocks of ray trees has in common, inside src/color: filters first, then nodes by
-// generation, the deepest first.
+// Evaluates whole blocks of ray trees: filters first, then nodes by generation, the deepest first, batched by program.
+// Trees in, a colour for each node and filter out. What Shader and PartShader have in common, inside src/color.
 #pragma once
 #include <span>
 #include <vector>
@@ -12,11 +12,11 @@ class BlockShading {
  public:
   explicit BlockShading(const ColorScene& scene) : scene_(scene) {}
 
-  /// Each fills its part of colors(). `programs`: of this scene.
+  /// The three fill their part of colors(). `programs`: of the scene of the constructor.
   void shade_filters(const TreeBlock& block, NodePrograms& programs);
-  /// Requires: the filters are there.
+  /// All nodes. Requires: the colours of the filters are there.
   void shade_nodes(const TreeBlock& block, NodePrograms& programs);
-  /// Some nodes only. Requires: the filters and what these nodes spawned are there.
+  /// Some nodes. Requires: the colours of the filters and of what these nodes spawned are there.
   void shade_nodes(const TreeBlock& block, NodePrograms& programs, std::span<const std::uint32_t> nodes);
 
   [[nodiscard]] const BlockColors& colors() const { return memory_.colors; }

@@ -1,10 +1,14 @@
+// Keys of nodes and filters, from hits (node_programs.h) and from paths alone (append_keys() of shade.h), and the table
+// of programs by key (ProgramTable of shade.h).
 #include "color/node_programs.h"
 
 #include <algorithm>
 #include <mutex>
 
 namespace relook {
+namespace {
 
+/// The key of a hit on an object, without lights and children.
 NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside) {
   const RayObject& object = scene.object(id);
   NodeKey key;
@@ -16,12 +20,7 @@ NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside) {
   return key;
 }
 
-NodeKey filter_key(const ColorScene& scene, ObjectId id) {
-  NodeKey key = surface_key(scene, id, false);
-  key.kind = NodeKind::filter;
-  return key;
-}
-
+/// Adds a light to a key if it reaches the node. `order`: its place in the light order.
 void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state) {
   if (state == ShadowState::open || state == ShadowState::filtered)
     key.lights.push_back({light, order, state == ShadowState::filtered});
@@ -34,6 +33,14 @@ NodeKey key_of(const ColorScene& scene, const TreeBlock& block, const RayNode& n
   const auto& order = scene.light_order();
   for (std::uint32_t light = 0; light < order.size(); ++light)
     note_light(key, order[light], light, block.lights[node.first_light + light].state);
+  return key;
+}
+
+}  // namespace
+
+NodeKey filter_key(const ColorScene& scene, ObjectId id) {
+  NodeKey key = surface_key(scene, id, false);
+  key.kind = NodeKind::filter;
   return key;
 }
 

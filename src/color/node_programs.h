@@ -1,5 +1,6 @@
-// Programs of the nodes of one block, as dense numbers, and batches of nodes with equal numbers: what shading and
-// compressing have in common, inside src/color.
+// The programs of the nodes of one block, as dense numbers, and batches of nodes with equal numbers: what shading
+// (block_shading.h) and compressing (compress/compress.cpp) have in common, inside src/color. Nodes with the same key
+// have the same program.
 #pragma once
 #include <map>
 #include <span>
@@ -10,11 +11,8 @@
 
 namespace relook {
 
-[[nodiscard]] NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside);
-/// The side is left open: it depends on the hit, not on the path.
+/// The key of a filter, as if light met it from outside: the caller sets `inside`, which depends on the hit.
 [[nodiscard]] NodeKey filter_key(const ColorScene& scene, ObjectId id);
-void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state);
-[[nodiscard]] NodeKey key_of(const ColorScene& scene, const TreeBlock& block, const RayNode& node);
 
 /// What of a surface, beside its material, its programs differ by.
 struct SurfaceForm {
@@ -51,7 +49,8 @@ struct SignatureHash {
   std::size_t operator()(const Signature& signature) const { return signature.hash(); }
 };
 
-/// Gives nodes dense program numbers within one block. Nodes, not filters, are restricted to a part of their colours.
+/// Gives nodes and filters dense numbers of programs. The programs of nodes, not of filters, are restricted to a part
+/// of their colours.
 class NodePrograms {
  public:
   NodePrograms(const ColorScene& scene, ProgramTable& table, const ColorPart& part = {})
@@ -74,7 +73,7 @@ class NodePrograms {
     const SurfaceForm form{inside, !object.mesh->colors.empty(), object.optics.volume && inside};
     return {kind, scene_.scene().object(id).material, form, children};
   }
-  /// `lights`: how many count, from the first.
+  /// `lights`: how many lights of the light order count, from the first.
   [[nodiscard]] Signature signature_of(const TreeBlock& block, const RayNode& node, std::size_t lights) const {
     if (node.object.is_none()) return {};
     Signature signature = signature_of(NodeKind::surface, node.object, node.point.inside, children_of(node));
@@ -97,7 +96,7 @@ class NodePrograms {
   const ColorScene& scene_;
   ProgramTable& table_;
   ColorPart part_;
-  std::size_t lamp_place_;  // of the part's only lamp in the light order
+  std::size_t lamp_place_;  // place of the part's only lamp in the light order; its length if there is none
   std::unordered_map<Signature, std::uint32_t, SignatureHash> numbers_;
   std::vector<BoundProgram> programs_;
   bool has_last_ = false;

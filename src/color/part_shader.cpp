@@ -8,7 +8,8 @@
 namespace relook {
 namespace {
 
-/// Can a part that is restricted everywhere be other than zero? Only lamps are looked for.
+/// May a part whose nodes are all restricted be other than zero in this block? False only where its one lamp reaches no
+/// node.
 bool may_reach(const LayerPart& layer, const RayScene& scene, const TreeBlock& block) {
   const ColorPart& part = layer.part;
   if (part.all_lamps || part.lamp.is_none() || part.sources != 0) return true;
@@ -51,7 +52,7 @@ void PartShader::shade(const TreeBlock& block, std::span<const std::uint32_t> ro
   out.resize(s.parts.size());
   s.shading.shade_filters(block, s.whole);
   s.shading.shade_nodes(block, s.whole);
-  for (std::size_t p = 0; p < s.parts.size(); ++p) {  // first: they need what lies below as a whole
+  for (std::size_t p = 0; p < s.parts.size(); ++p) {  // these first, since they need the nodes below as a whole
     if (!s.parts[p].at_first_hit) continue;
     s.shading.shade_nodes(block, s.programs[p], roots);
     s.take(roots, out[p]);

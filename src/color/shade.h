@@ -1,5 +1,6 @@
-// From ray trees to colours: gives every node its program, batches nodes that share one, and evaluates generation by
-// generation, the deepest first, a parent combining its children.
+// From ray trees to colours (paper 2.1): gives every node its program, batches nodes that share one, and evaluates
+// generation by generation, the deepest first, a parent combining its children. What a colour is: SHADING.md. Called by
+// render and preprocess (image/render.cpp) and, for the samples that an edit reaches, by replay/.
 #pragma once
 #include <map>
 #include <memory>
@@ -18,15 +19,16 @@ namespace relook {
 /// no parameter values, so they outlive colour edits.
 class ProgramTable {
  public:
-  /// `scene`: as it is now; programs are built from it.
+  /// The program for a node of this key. `scene`: as it is now; a program that is not there yet is built from it.
   [[nodiscard]] BoundProgram get(const Scene& scene, const NodeKey& key);
-  /// To be called when the structure of a material, the environment's image, or the lights may have changed.
+  /// The three are to be called when the structure of a material, the environment's image, or the lights may have
+  /// changed. Not while another thread calls get().
   void forget(MaterialId material);
   void forget_environment();
   void clear();
 
  private:
-  using Shape = std::pair<MaterialStructure, NodeKey>;  // the key without its material
+  using Shape = std::pair<MaterialStructure, NodeKey>;  // the key has no material
 
   std::shared_mutex mutex_;
   std::map<NodeKey, BoundProgram> bound_;
@@ -41,8 +43,8 @@ class Shader {
   ~Shader();
   /// Colours of the samples in `block`: out[k] is that of the tree rooted at node roots[k].
   void shade(const TreeBlock& block, std::span<const std::uint32_t> roots, std::span<Rgba> out);
-  /// Compresses those of the same samples that depend on `parameters`. What it returns holds pointers into `splits`.
-  /// Requires: where textures are looked up (kMappingMask) is no parameter.
+  /// Compresses the trees rooted at `roots` that depend on `parameters`. The result holds pointers into `splits`.
+  /// Requires: `parameters` has no field of kMappingMask, by which textures are looked up elsewhere.
   [[nodiscard]] CompressedBlock compress(const TreeBlock& block, std::span<const std::uint32_t> roots,
                                          const ParameterSet& parameters, SplitTable& splits);
 
@@ -51,8 +53,8 @@ class Shader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The keys of all nodes and filters of a path, appended: with them the colours that an edit can change are found from
-/// paths alone. `lights`: the light order in which the path was recorded, with `shadow_bits`.
+/// Appends the keys of all nodes and filters of a path to `keys`: with them the colours that an edit can change are
+/// found from paths alone. `lights`, `shadow_bits`: the light order and the counters with which the path was recorded.
 void append_keys(const ColorScene& scene, std::span<const std::uint32_t> path, std::span<const LightId> lights,
                  std::uint32_t shadow_bits, std::vector<NodeKey>& keys);
 

@@ -1,5 +1,6 @@
-// Tunnels of a tile in the making, while its ray trees come by in any order: around each cell's own trees. Regions
-// above the cells follow from these once all trees have been enclosed.
+// The tunnels of a tile in the making (paper 3.4.3): ray trees come in one by one, and each cell encloses its own. Once
+// all have come, tunnels() unites the cells upwards. Used by preprocess, which has the trees at hand as it traces
+// (image/render.cpp).
 #pragma once
 #include <vector>
 
@@ -11,8 +12,8 @@ class CellTunnels {
  public:
   /// `most`: tunnels of a region.
   CellTunnels(const TileGrid& grid, std::size_t most);
-  /// The tree of a sample at a pixel of a tile that is `width` pixels wide, whose nodes start at `root`. Trees of a
-  /// cell come in the order of their samples.
+  /// Encloses the tree whose nodes start at `root`: of a sample at `pixel` of a tile that is `width` pixels wide. Cells
+  /// come in any order; within a cell, trees come in the order of their samples, so that a region's tunnels do, too.
   void enclose(std::uint32_t pixel, std::uint32_t width, PathId path_class, const RayScene& scene,
                const TreeBlock& block, std::uint32_t root);
   [[nodiscard]] TileTunnels tunnels() const;
@@ -22,11 +23,11 @@ class CellTunnels {
  private:
   TileGrid grid_;
   std::size_t most_;
-  std::vector<TunnelSet> of_cell_;  // [cells], or the one of the tile if there are none
+  std::vector<TunnelSet> of_cell_;  // [cells]; of a tile without cells, the one around all of it
   std::vector<History> scratch_;
 };
 
-/// Around all of a tile's tunnels. Requires: it has regions.
+/// Around all of a tile's tunnels. Requires: tunnels.grid().regions() > 0.
 [[nodiscard]] Sections around(const TileTunnels& tunnels);
 
 }  // namespace relook

@@ -60,7 +60,7 @@ class PixelClasses {
         }
     return true;
   }
-  /// Largest uniform squares in a square of 4, 2 or 1 pixels.
+  /// The number of largest squares with one class in a square of 4, 2 or 1 pixels.
   [[nodiscard]] std::size_t count(std::uint32_t x, std::uint32_t y, std::uint32_t size) const {
     if (!is_inside(x, y)) return 0;
     if (has_one(x, y, size)) return 1;

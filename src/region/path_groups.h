@@ -1,5 +1,7 @@
 // Groups (paper 3.2): regions whose samples have few different ray paths know them, so that one look at each path
-// decides about the region. A region with one path is a 1-group, or group; with up to m of them a p-group.
+// decides about the region. A region with one path is a 1-group, or group; with up to m of them a p-group. PathGroups
+// are those of a tile, GroupPyramid has the regions above; after any edit both equal what would be built afresh. Kept
+// by ImageRegions (image/regions.h).
 #pragma once
 #include <array>
 #include <functional>
@@ -13,7 +15,7 @@
 
 namespace relook {
 
-/// By path, what counts as the same path: PathId(class).
+/// The class of a path, as an id: paths of one class count as the same path (atoms, paper 3.2).
 using ClassOf = std::function<PathId(PathId)>;
 
 /// The groups of one tile.
@@ -25,7 +27,7 @@ class PathGroups {
   PathGroups(const TileTrees& trees, std::uint32_t width, std::uint32_t samples, std::size_t most,
              const ClassOf& class_of);
 
-  /// After the paths of some leaves have changed: these are looked at again, and the regions above them.
+  /// Brings the groups up to date after the paths of the leaves `changed` have changed: these, and the regions above.
   void update(const TileTrees& trees, std::uint32_t width, std::uint32_t samples, const Leaves& changed,
               const ClassOf& class_of);
 
@@ -52,8 +54,9 @@ class PathGroups {
 /// Largest number of paths that a group may know.
 inline constexpr std::size_t kMostGroupPaths = 64;
 
-/// Adds the leaves in which some path class is flagged, or may be: going down from the tile, a group is decided by its
-/// classes. `flagged`: by path class.
+/// Adds to `leaves` those in which some sample's path class is flagged, or may be. Groups are asked from the tile down:
+/// a group without a flagged class is left out, one with flagged classes alone is taken whole. `flagged`: by path
+/// class.
 void select_leaves(const PathGroups& groups, std::span<const std::uint8_t> flagged, Leaves& leaves,
                    RegionCounters& counters);
 
@@ -61,17 +64,17 @@ void select_leaves(const PathGroups& groups, std::span<const std::uint8_t> flagg
 class GroupPyramid {
  public:
   GroupPyramid() = default;
-  /// `tiles`: groups of tiles in rows of `columns`; outlives it, its elements may change.
+  /// `tiles`: the groups of all tiles, in rows of `columns`; they are not kept, update() takes them again.
   GroupPyramid(std::span<const PathGroups> tiles, std::size_t columns, std::size_t most);
   /// After the groups of some tiles have changed.
   void update(std::span<const PathGroups> tiles, std::vector<std::size_t> changed);
-  /// By tile: may it have a flagged class? Found from the whole image down; tiles themselves are not looked at.
+  /// [tiles]: may the tile have a flagged class? Found from the whole image down to the level above the tiles.
   [[nodiscard]] std::vector<bool> find(std::span<const std::uint8_t> flagged, RegionCounters& counters) const;
   [[nodiscard]] std::size_t bytes() const;
   bool operator==(const GroupPyramid&) const = default;
 
  private:
-  /// Of a region; nothing: it has more classes than it may know.
+  /// The classes of a region; none: it has more of them than it may know.
   using Classes = std::optional<std::vector<PathId>>;
   struct Level {
     std::size_t columns = 0, rows = 0;

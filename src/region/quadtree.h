@@ -1,5 +1,6 @@
-// The image quadtree inside one tile (paper 3.1): square regions of pixels, up to the tile. Groups end at leaves of 4x4
-// pixels; where tunnels end is a choice (4.1.3).
+// The image quadtree inside one tile (paper 3.1): TileGrid numbers its square regions, from the cells of some level up
+// to the tile of 64x64 pixels. Groups end at leaves of 4x4 pixels; where tunnels end is a choice (paper 4.1.3). Plain
+// arithmetic, shared by region/, image/ and replay/.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,7 +15,7 @@ namespace relook {
 inline constexpr std::uint32_t kTileLevel = 6;
 static_assert(kTileSize == 1U << kTileLevel);
 
-/// Side of a region in pixels, and its upper left corner in the tile.
+/// The upper left corner of a region in the tile, and its side, in pixels.
 struct RegionSquare {
   std::uint32_t x = 0, y = 0, size = 0;
 };
@@ -63,7 +64,7 @@ class TileGrid {
   std::uint32_t lowest_;
 };
 
-/// Leaves are what is searched as one: the cells of groups.
+/// Leaves: the cells of groups, the smallest regions that a search selects.
 inline constexpr TileGrid kLeafGrid(2);
 inline constexpr std::uint32_t kLeafSize = 1U << kLeafGrid.lowest();  // pixels
 inline constexpr std::uint32_t kLeafSide = kLeafGrid.side();          // leaves along a tile
@@ -106,7 +107,8 @@ void for_each_sample(const TileRect& rect, std::uint32_t samples, const Leaves& 
     }
 }
 
-/// How a search went through regions: whose contents were looked at, and which were left out with all below them.
+/// How a search went down the quadtree: how many regions were asked, and how many of these were left out with all below
+/// them.
 struct RegionCounters {
   std::uint64_t visited = 0, culled = 0;
   RegionCounters& operator+=(const RegionCounters& other) {

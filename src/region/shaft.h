@@ -1,6 +1,6 @@
 // Shafts (paper 3.4.2, after Haines & Wallace 1991): the convex hull of two boxes with axis-aligned faces. A segment
 // whose ends lie in the boxes lies in the shaft; the shaft of sub-boxes lies in the shaft of the boxes. A box that is a
-// point makes a pyramid.
+// point makes a pyramid. Called by tunnel.cpp for every section.
 #pragma once
 #include "base/math.h"
 

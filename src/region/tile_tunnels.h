@@ -1,6 +1,7 @@
-// The tunnels of one tile (paper 3.4): per region up to some number of tunnels, the first ones each for the ray trees
+// The tunnels of one tile (paper 3.4): a region has up to some number of tunnels, the first ones each for the ray trees
 // of one path, the last for all others. Cells, the lowest regions that have any, enclose their ray trees; a region
-// above encloses its four parts' tunnels, so that these follow from the cells'.
+// above encloses its four parts' tunnels, so that these follow from the cells'. After any edit they equal those built
+// afresh. Kept by ImageRegions (image/regions.h), stored by the cache (cache/tunnel_parts.h).
 #pragma once
 #include <functional>
 #include <span>
@@ -16,11 +17,12 @@ namespace relook {
 
 /// A tunnel of a region.
 struct Tunnel {
-  PathId path;  // of all its ray trees; none: it collects what has no tunnel of its own
+  PathId path;  // that all its ray trees have; none: it collects the trees of all paths without a tunnel of their own
   Sections sections;
 };
 
-/// At most `most` tunnels: those for one path in order of first appearance, then the collecting one.
+/// The tunnels of one region in the making, at most `most`: those for one path in order of first appearance, then the
+/// collecting one.
 class TunnelSet {
  public:
   explicit TunnelSet(std::size_t most) : most_(most) {}
@@ -48,7 +50,7 @@ class TileTunnels {
     const Entry& entry = entries_[first_[region] + k];
     return {entry.path, {sections_.data() + entry.first, entry.sections}};
   }
-  /// Not built.
+  /// True if none have been built.
   [[nodiscard]] bool empty() const { return first_.empty(); }
   [[nodiscard]] const TileGrid& grid() const { return grid_; }
   [[nodiscard]] std::size_t sections() const { return sections_.size(); }
@@ -56,11 +58,12 @@ class TileTunnels {
   [[nodiscard]] std::size_t bytes() const;
   bool operator==(const TileTunnels&) const = default;
 
-  /// A copy as plain bytes, for this process alone; and back.
+  /// The tunnels as bytes and back: for the spill file of this process alone, since the bytes are not checked.
   [[nodiscard]] Bytes packed() const;
   [[nodiscard]] static TileTunnels unpacked(BytesView bytes);
 
-  /// What all of a tile's tunnels follow from.
+  /// The tunnels of the cells as columns. All of a tile's tunnels follow from them, so that a cache stores nothing
+  /// else.
   struct Cells {
     std::vector<std::uint8_t> counts;           // [cells] of tunnels
     std::vector<PathId> paths;                  // [tunnels], cell by cell
@@ -68,17 +71,19 @@ class TileTunnels {
     Sections sections;                          // tunnel by tunnel
   };
   [[nodiscard]] Cells cells() const;
-  /// Requires: broken_invariants(cells, ...) finds nothing. `most`: tunnels of a region.
+  /// Cells and all regions above. `most`: tunnels of a region. Requires: broken_invariants(cells, ...) finds nothing.
   [[nodiscard]] static TileTunnels united(const TileGrid& grid, const Cells& cells, std::size_t most);
 
-  /// Gives the paths that tunnels are of other ids; the order of a region's tunnels stays.
+  /// Renumbers the paths of the tunnels; the order of a region's tunnels stays.
   void rename_paths(const std::function<PathId(PathId)>& new_id);
 
   using TunnelsOfCell = std::function<std::span<const Tunnel>(std::uint32_t cell)>;
-  /// `of_cell` is asked for one cell after the other.
+  /// Builds a tile's tunnels from those of its cells. `of_cell` is asked for one cell after the other; what it returns
+  /// is copied.
   [[nodiscard]] static TileTunnels built(const TileGrid& grid, std::size_t most, const TunnelsOfCell& of_cell);
-  /// The tile's tunnels after the trees of some leaves have changed: `of_cell` gives those of cells with changed
-  /// leaves, all else is kept, regions above are united anew. Requires: built before, with as many of a region.
+  /// The tile's tunnels after the trees of the leaves `changed` have changed: `of_cell` gives those of cells with
+  /// changed leaves, regions above these are united anew, all else is kept. Requires: !empty(), and the same `most` as
+  /// before.
   [[nodiscard]] TileTunnels rebuilt(const Leaves& changed, std::size_t most, const TunnelsOfCell& of_cell) const;
 
  private:
@@ -99,9 +104,10 @@ class TileTunnels {
   std::vector<TunnelSection> sections_;
 };
 
-/// A sentence about sections that cannot be those of a tunnel, or "".
+/// What is wrong with sections that cannot be those of a tunnel, as a sentence, or "".
 [[nodiscard]] std::string broken_tunnel(std::span<const TunnelSection> sections);
-/// Sentences about cells that cannot be those of any tile with so many classes of paths and tunnels a region.
+/// What is wrong with cells that cannot be those of a tile with `most` tunnels a region and paths below `path_classes`:
+/// the first finding as a sentence, or nothing.
 [[nodiscard]] std::vector<std::string> broken_invariants(const TileTunnels::Cells& cells, const TileGrid& grid,
                                                          std::size_t most, std::size_t path_classes);
 

@@ -8,8 +8,8 @@
 namespace relook {
 namespace {
 
-/// The section of a history, put in if it is not there. Histories come in the order of preorder walks, so the wanted
-/// one is near the end.
+/// The section of a history, put in if it is not there. Searched from the end: trees are walked in preorder, so that
+/// the wanted one is near it.
 TunnelSection& section_of(Sections& tunnel, History history) {
   std::size_t at = tunnel.size();
   while (at > 0 && tunnel[at - 1].history > history) --at;
@@ -30,7 +30,7 @@ Box grown(const Box& box, float margin) {
   return Box(box.min - around, box.max + around);
 }
 
-/// How far what leaves `from` has to be followed until it is past all of `target`.
+/// The metres that a ray from `from` has to be followed until it is past all of `target`.
 float reach(const Box& from, const Box& target) {
   Box all = from;
   all.extendBy(target);
@@ -46,7 +46,7 @@ Box origins_of(std::span<const TunnelSection> tunnel, const TunnelSection& secti
   return origins;
 }
 
-/// Rounding of rays between these boxes: where a ray is, seen from an object, is known to this many metres.
+/// What rounding can do to a ray between these boxes, in metres, as the objects of the change see it.
 float margin(const Box& from, const Box& to, const ChangeBoxes& change) {
   constexpr float kRounding = 0x1p-16F;
   float largest = 0;
@@ -82,7 +82,7 @@ bool is_light_touched(const TunnelSection& section, const LightEnd& light, const
                            : is_between(section.points, light.end, 0, target, test);
 }
 
-/// Marks the ancestors of what is touched.
+/// Marks the histories above each touched one: something below them is touched.
 void mark_ancestors(Touches& touches) {
   const std::size_t touched = touches.size();
   for (std::size_t i = 0; i < touched; ++i) {

@@ -1,5 +1,7 @@
 // Tunnels (paper 3.4.1): around all segments of some ray trees, a section for each branch history with its rays and its
 // shadow segments. A section keeps the boxes of its segments' ends; the shafts between them follow from these.
+// enclose() makes a tunnel, find_touches() asks what of it a change of the scene may touch: never less than what it
+// does touch.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -13,10 +15,10 @@ namespace relook {
 
 struct TunnelSection {
   History history;
-  float slack = 0;                      // metres that a ray is tested beyond its hit, at most
-  LightSet open = {}, blocked = {};     // lights that some node's shadow segment reaches, or does not
-  Box points;                           // the hits, and the origins of what leaves them; at the eye: of primary rays
-  Box leaving;                          // unit directions of the rays that met nothing
+  float slack = 0;                   // the most metres that a ray test looks beyond the ray's hit
+  LightSet open = {}, blocked = {};  // lights to which some shadow segment is open, or blocked
+  Box points;                        // the hits, and the origins of what leaves them; at the eye: of primary rays
+  Box leaving;                       // unit directions of the rays that met nothing
 
   bool operator==(const TunnelSection&) const = default;
 };
@@ -41,34 +43,36 @@ struct LightEnd {
 [[nodiscard]] std::vector<LightEnd> light_ends(const RayScene& scene);
 [[nodiscard]] std::vector<LightEnd> light_ends(const Scene& scene);
 
-/// Of all shafts of a tunnel together, those of rays that met nothing as far as the tunnel's own extent: in square
-/// metres, as the paper's 4.3 weighs it. Directions to lights as far, too.
+/// Square metres of all shafts of a tunnel together, a weight of the paper's 4.3. Shafts that have no far end, of rays
+/// that met nothing and of directional lights, are taken as long as the tunnel's own extent.
 [[nodiscard]] double surface_area(std::span<const TunnelSection> tunnel, const std::vector<LightEnd>& lights);
 
-/// A group of objects as boxes: the one around all, and if there are several objects smaller ones for parts of it.
+/// Several objects as boxes: `all` is around all of them; with two objects or more, `parts` are around some of them
+/// each.
 struct BoxSet {
   Box all;
   std::vector<Box> parts;
   [[nodiscard]] bool empty() const { return all.isEmpty(); }
 };
-/// Boxes of at most `most` parts; `boxes` is reordered.
+/// `boxes`: one an object; they are reordered. `most`: parts.
 [[nodiscard]] BoxSet box_set(std::vector<Box>& boxes, std::size_t most = 16);
 [[nodiscard]] bool touches(const Shaft& shaft, const BoxSet& boxes);
 
 /// What a change of the scene can touch, in boxes that hold every hit up to rounding.
 struct ChangeBoxes {
-  BoxSet moved;                 // what rays may meet now
-  BoxSet shadows_before;        // what blocked or filtered light
-  BoxSet shadows_after;         // what does so now
+  BoxSet moved;                 // what rays may meet after the change
+  BoxSet shadows_before;        // what blocked or filtered light before it
+  BoxSet shadows_after;         // what does so after it
   float condition = 1;          // how much the objects' placement stretches rounding, at least 1
-  bool count_blockers = false;  // a further blocker of a blocked segment is a change, too
+  bool count_blockers = false;  // with shadow counters: a further blocker of a blocked segment is a change, too
 };
 
 struct TunnelTest {
   const ChangeBoxes& change;
   const std::vector<LightEnd>& lights;
 };
-/// True if the change may touch the tunnel at all; `touches`, if not null, gets the sections that it may touch.
+/// True if the change may touch the tunnel at all. `touches`, if not null, gets the sections that it may touch, and
+/// those above them, by increasing history.
 bool find_touches(std::span<const TunnelSection> tunnel, const TunnelTest& test, Touches* touches);
 
 }  // namespace relook

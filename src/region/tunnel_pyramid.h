@@ -1,5 +1,5 @@
-// The image quadtree above the tiles: regions of 2x2 tiles, of 2x2 of these, and so on up to the whole image, each with
-// one tunnel around those of its parts.
+// The image quadtree above the tiles (paper 3.4.3): regions of 2x2 tiles, of 2x2 of these, and so on up to the whole
+// image, each with one tunnel around those of its parts. Kept by ImageRegions (image/regions.h).
 #pragma once
 #include <functional>
 #include <vector>
@@ -17,10 +17,10 @@ class TunnelPyramid {
   TunnelPyramid() = default;
   /// `columns`, `rows`: of tiles, numbered row by row.
   TunnelPyramid(std::size_t columns, std::size_t rows, const EncloseTile& enclose_tile);
-  /// After the tunnels of some tiles have changed.
+  /// Brings the regions above `tiles` up to date after the tunnels of these have changed.
   void update(const std::vector<std::size_t>& tiles, const EncloseTile& enclose_tile);
 
-  /// By tile: may the change touch it? Found from the whole image down; tiles themselves are not looked at.
+  /// [tiles]: may the change touch the tile? Found from the whole image down to the level above the tiles.
   [[nodiscard]] std::vector<bool> find(const TunnelTest& test, RegionCounters& counters) const;
   [[nodiscard]] std::size_t bytes() const;
   bool operator==(const TunnelPyramid&) const = default;

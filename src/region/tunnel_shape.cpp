@@ -7,7 +7,7 @@ namespace {
 
 std::uint64_t divided(std::uint64_t length, std::uint64_t by) { return (length + by - 1) / by; }
 
-/// Regions inside of a part of a tile, from the level of `cells` up to the tile.
+/// How many regions a tile of this size, in pixels, has from the level of `cells` up to itself.
 std::uint64_t regions_of(std::uint32_t width, std::uint32_t height, std::uint32_t cells) {
   std::uint64_t sum = 0;
   for (std::uint32_t level = cells; level <= kTileLevel; ++level)
@@ -47,7 +47,7 @@ std::vector<std::uint8_t> cell_levels(const TunnelShape& shape, std::uint32_t wi
   const std::uint64_t least = tiles.count() + regions_above_tiles(width, height);
   if (*shape.of_image < least) return {};
   std::uint64_t left = *shape.of_image - least;
-  // Of a region with one tunnel that of the tile is the one around all of it.
+  // With one tunnel a region, the tile's is the one around all of it, which `least` counts already.
   const std::uint64_t of_tile = shape.of_region - (shape.of_region == 1 ? 1 : 0);
   const auto price = [&](std::size_t tile, std::uint32_t level) {
     return level == kTileLevel ? of_tile

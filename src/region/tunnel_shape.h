@@ -9,7 +9,7 @@
 
 namespace relook {
 
-/// What is asked for.
+/// The limits that --tunnels, --tunnel-levels and --most-tunnels set.
 struct TunnelShape {
   std::size_t of_region = 1;              // most tunnels of a region, the last for all further paths; 0: none
   std::uint32_t dropped_levels = 2;       // the lowest levels without tunnels, 0..kTileLevel; 0: down to single pixels
@@ -17,14 +17,14 @@ struct TunnelShape {
   bool operator==(const TunnelShape&) const = default;
 };
 
-/// [tiles], numbered row by row: the level of a tile's cells, kTileLevel + 1 where it has just the one around all of
-/// it. Empty: no tunnels at all. With a limit on all tunnels the lowest levels go first, in some tiles sooner than in
-/// others, which are spread evenly; what a limit leaves nothing of is an image's tunnels from its tiles up. Of a region
-/// so many are counted as it may have.
+/// [tiles], numbered row by row: the level of a tile's cells; kTileLevel + 1 where the tile has no tunnel but the one
+/// around all of it. Empty: the image has no tunnels. A limit on all tunnels takes the lowest levels first, in some
+/// tiles sooner than in others, which are spread evenly; one that has no room for a tunnel of each tile and of each
+/// region above leaves none. A region counts with as many tunnels as it may have.
 [[nodiscard]] std::vector<std::uint8_t> cell_levels(const TunnelShape& shape, std::uint32_t width,
                                                     std::uint32_t height);
 
-/// Of the quadtree: each has one tunnel if there are any.
+/// The number of regions of the quadtree above the tiles. Each has one tunnel if the image has any.
 [[nodiscard]] std::uint64_t regions_above_tiles(std::uint32_t width, std::uint32_t height);
 
 }  // namespace relook

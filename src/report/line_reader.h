@@ -1,5 +1,5 @@
-// A text file line by line, with the place of each, for files that are larger than what should be in memory. Nothing
-// here blocks on a FIFO or a device.
+// A text file line by line, with the place of each, for files that are larger than what should be in memory:
+// report.json and progress.jsonl. A FIFO or a device is refused, and never blocks.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -17,8 +17,8 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  /// The next line without its end; false at the end of the file, where a line that has none does not count. Throws
-  /// InputError (unreadable, or a line of more than 64 MiB).
+  /// The next line without its line feed; false at the end of the file. What follows the last line feed is no line.
+  /// Throws InputError (unreadable, or a line of more than 64 MiB).
   bool next(std::string& line);
   /// Byte offset of the line that next() gave.
   [[nodiscard]] std::uint64_t offset() const { return offset_; }
@@ -28,8 +28,8 @@ class LineReader {
  private:
   std::filesystem::path path_;
   int descriptor_ = -1;
-  std::string waiting_;  // read, from the end of the last line on
-  std::size_t taken_ = 0;
+  std::string waiting_;    // bytes that have been read
+  std::size_t taken_ = 0;  // how many of these belong to lines that were given
   std::uint64_t offset_ = 0, next_offset_ = 0;
 };
 

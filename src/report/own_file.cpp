@@ -39,7 +39,7 @@ bool has_format(const std::filesystem::path& path, std::string_view prefix) {
   return format_of(path).starts_with(prefix);
 }
 
-/// The first write of a command may have been cut short anywhere.
+/// Whether the file begins like a line of progress.jsonl, of which the first may have been cut short anywhere.
 bool starts_like_progress(std::string_view start) {
   constexpr std::size_t kHashDigits = 32;
   constexpr std::string_view kHead = " {\"relook\":\"progress/";

@@ -1,5 +1,5 @@
 // Which files relook has written: told by what stands in them, never by their names alone. Whatever this does not know
-// is the user's.
+// is the user's. Asked before a file is replaced or removed, and before a report is believed to be one.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -20,10 +20,10 @@ enum class OwnKind : std::uint8_t {
   access_log,  // --access-log
   journal,     // written by `relook journal` and not changed since
 };
-/// "a frame of relook", for messages.
+/// "a frame", for messages that go on with "of relook".
 [[nodiscard]] std::string_view own_kind_name(OwnKind kind);
 
-/// Whether `path` is a regular file of this kind that relook has written. What cannot be read is none.
+/// Whether `path` is a regular file of this kind that relook has written; false for what cannot be read.
 [[nodiscard]] bool is_own_file(const std::filesystem::path& path, OwnKind kind);
 
 }  // namespace relook

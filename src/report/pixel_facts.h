@@ -30,10 +30,10 @@ struct PixelFacts {
   Route environment;                                         // "" : no ray leaves the scene
   /// By sample, route and light.
   std::map<std::tuple<std::uint32_t, Route, LightId>, SegmentFacts> segments;
-  std::vector<std::string> lines;  // the ray paths, a node a line, indented; equal ones once
+  std::vector<std::string> lines;  // the ray paths, a line a node, indented; equal paths stand once
 };
 
-/// `block`: complete trees whose nodes hold in `scene`.
+/// `block`: complete trees that hold in `scene`, one a sample of the pixel; `roots`: their first nodes.
 [[nodiscard]] PixelFacts pixel_facts(const Scene& scene, const TreeBlock& block,
                                      const std::vector<std::uint32_t>& roots);
 

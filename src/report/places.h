@@ -1,5 +1,6 @@
 // Where the files of a run are, said so that they are found again when the run, or all of it together, has moved, and
-// from any working folder: relative to the run and absolute, as ASCII with other bytes as %XX.
+// from any working folder: relative to the run and absolute, as ASCII with other bytes as %XX. Written to report.json
+// by `replay`, followed by `blame`.
 #pragma once
 #include <filesystem>
 #include <optional>

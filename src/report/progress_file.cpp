@@ -37,7 +37,7 @@ bool set_lock(int descriptor, short kind, std::uint64_t first, std::uint64_t cou
 /// Whether a lock was refused because somebody has it, not because the file system has none.
 bool is_held(int error) { return error == EAGAIN || error == EACCES; }
 
-/// Whether a file that ends within a line, which may be its first, has no other.
+/// Whether a file that ends within a line has no other line.
 bool has_one_line(int descriptor, off_t size) {
   if (size >= kLongestHead) return false;
   std::string text(static_cast<std::size_t>(size), '\0');
@@ -100,7 +100,7 @@ ProgressFile::Turn::~Turn() {
   if (is_ours_) static_cast<void>(set_lock(file_.descriptor_, F_UNLCK, byte_, 1));
 }
 
-/// What a killed command left of a line is ended first; of the first line, which tells what the file is, it is removed.
+/// Ends what a killed command has left of a line; removes it if it is the first line, which tells what the file is.
 void ProgressFile::append_in_turn(std::span<const Json> entries) {
   const off_t size = ::lseek(descriptor_, 0, SEEK_END);
   if (size < 0) fail_to_write(path_, "write", errno);

@@ -32,7 +32,7 @@ class ProgressFile {
   ProgressFile(const ProgressFile&) = delete;
   ProgressFile& operator=(const ProgressFile&) = delete;
 
-  /// Adds a line and syncs it to disk, while no other command does.
+  /// Adds a line and syncs it to disk, within exclusively().
   void append(const Json& entry) {
     exclusively([&] { append_in_turn({&entry, 1}); });
   }
@@ -40,29 +40,29 @@ class ProgressFile {
   void append_in_turn(std::span<const Json> entries);
   /// Within exclusively(), with all steps locked: forgets all that is there.
   void clear();
-  /// Runs `work` while no other command appends or does the same. One that has been stopped in its turn is waited for
-  /// for some seconds only.
+  /// Runs `work` while no other command is in exclusively(). A command that does not end its turn, since it was
+  /// stopped, is waited for kShortWait seconds; then `work` runs all the same.
   template <class Work>
   void exclusively(const Work& work) {
     const Turn turn(*this, kAppendByte);
     work();
   }
-  /// The same for the page, which takes longer: appending goes on meanwhile. `waits`: false if another command's page
-  /// is to do, then nothing is run.
+  /// The same for writing the page, with a lock of its own, so that others append meanwhile. `waits`: for another
+  /// command's page, up to kLongWait seconds; otherwise `work` is left out while one is being written.
   template <class Work>
   void exclusively_for_page(bool waits, const Work& work) {
     const Turn turn(*this, kPageByte, waits ? kLongWait : 0);
     if (turn.is_ours() || waits) work();
   }
-  /// Whether another command is at one of these steps.
+  /// Whether another command holds one of these steps.
   [[nodiscard]] bool is_being_done(std::uint32_t first_step, std::uint32_t last_step) const;
-  /// Whether no other command is at any step of the run; if so, none begins until unlock_other_steps(). Not for long:
-  /// commands that begin wait for a second at most.
+  /// Locks all steps of the run; false if another command holds one. Commands that begin meanwhile wait for
+  /// unlock_other_steps(), for a second at most, and then give up.
   [[nodiscard]] bool lock_all_steps();
   /// Holds the steps first..last alone again.
   void unlock_other_steps();
   [[nodiscard]] std::uint64_t size_bytes() const;
-  /// The run is complete. Requires: lock_all_steps() has said so.
+  /// Removes the file of a run that is complete. Requires: lock_all_steps() has returned true.
   void remove();
 
  private:

@@ -10,6 +10,8 @@
 namespace relook {
 namespace {
 
+constexpr std::int64_t kReportVersion = 1;
+
 template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -73,6 +75,28 @@ Json number_json(const StepReport& step, bool of_drag) {
   return has_number ? Json(*step.place.number) : Json(nullptr);
 }
 
+Json options_json(const RunReport& report) {
+  const StructureOptions& structures = report.structures;
+  return {{"max_depth", report.view.max_depth},
+          {"memory", or_null(structures.memory_bytes)},
+          {"policy", structures.policy},
+          {"disk", or_null(structures.disk_bytes)},
+          {"ray_trees", structures.ray_trees_percent},
+          {"color_trees", structures.color_trees_percent},
+          {"tunnels", structures.tunnels},
+          {"tunnel_levels", structures.tunnel_levels},
+          {"most_tunnels", or_null(structures.most_tunnels)},
+          {"groups", structures.groups},
+          {"atoms", structures.atoms},
+          {"params", structures.params},
+          {"shadow_bits", report.view.shadow_bits},
+          {"float", report.float_frames},
+          {"aovs", report.layers},
+          {"exposure", report.exposure},
+          {"verify", or_null(report.verify_percent)},
+          {"steps", range_json(report.step_range)}};
+}
+
 }  // namespace
 
 Json step_json(const StepReport& step) {
@@ -120,28 +144,6 @@ Json step_json(const StepReport& step) {
           {"overlays", step.has_overlays},
           {"verify_percent", or_null(step.verify_percent)},
           {"verify", verify_json(step.verify)}};
-}
-
-Json options_json(const RunReport& report) {
-  const StructureOptions& structures = report.structures;
-  return {{"max_depth", report.view.max_depth},
-          {"memory", or_null(structures.memory_bytes)},
-          {"policy", structures.policy},
-          {"disk", or_null(structures.disk_bytes)},
-          {"ray_trees", structures.ray_trees_percent},
-          {"color_trees", structures.color_trees_percent},
-          {"tunnels", structures.tunnels},
-          {"tunnel_levels", structures.tunnel_levels},
-          {"most_tunnels", or_null(structures.most_tunnels)},
-          {"groups", structures.groups},
-          {"atoms", structures.atoms},
-          {"params", structures.params},
-          {"shadow_bits", report.view.shadow_bits},
-          {"float", report.float_frames},
-          {"aovs", report.layers},
-          {"exposure", report.exposure},
-          {"verify", or_null(report.verify_percent)},
-          {"steps", range_json(report.step_range)}};
 }
 
 std::string_view program_version() { return RELOOK_VERSION; }

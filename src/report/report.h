@@ -1,5 +1,6 @@
-// report.json, version 1: what each step of a run cost and what it could skip. Its names are stable: report.schema.json
-// beside this file has all of them; additions are welcome, renames are not.
+// report.json, version 1: what each step of a run cost and what it could skip, from the plain values below to JSON. Its
+// names are stable: report.schema.json beside this file has all of them; names may be added, none is renamed. Filled
+// and written by cli/run/; report_file.h has the layout of the file.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -17,8 +18,6 @@
 
 namespace relook {
 
-inline constexpr std::int64_t kReportVersion = 1;
-
 /// The program's own version, "0.1.0".
 [[nodiscard]] std::string_view program_version();
 
@@ -34,21 +33,22 @@ struct FileStamp {
   std::int64_t modified = 0;  // nanoseconds since the epoch: with `bytes`, tells most changes without reading the file
 };
 
-/// A frame, or a drag or wedge as a whole: that has no frame of its own and names its last one.
+/// One entry of `steps`: of a frame, or of a drag or wedge as a whole, which has no frame of its own and names its last
+/// one.
 struct StepReport {
   FramePlace place;
   bool is_whole_step = false;  // of a drag or wedge
   std::string name;
   ChangeClass change = ChangeClass::base;
   std::vector<std::string> reasons;
-  bool is_drag = false;        // what numbered frames are of
+  bool is_drag = false;        // of numbered frames: they are a drag's, otherwise a wedge's
   std::string frame, preview;  // files relative to the run folder
   std::string edits_hash;      // see report/edit_hashes.h
   std::string source_hash;     // of RunReport::source
   double exposure = 0;         // stops, of the preview and the overlays
-  bool has_overlays = false;   // they were asked for
+  bool has_overlays = false;   // --overlays
   std::optional<double> verify_percent;
-  std::string command;  // that has done it: a number of its own
+  std::string command;  // which command has done it: 16 hexadecimal digits, of its own
   std::map<std::string, FileStamp>
       files;  // of the frame, its preview and its overlays, by name; known once they are written
   Counters counters;
@@ -64,7 +64,7 @@ struct StepRange {
   std::optional<std::uint32_t> last;  // none: to the end
 };
 
-/// Structure options as given; frames never depend on them.
+/// The options of structures and memory as given; frames never depend on them.
 struct StructureOptions {
   std::optional<std::uint64_t> memory_bytes;
   std::string policy = "weight";            // of eviction
@@ -84,7 +84,7 @@ struct CacheSizes {
   [[nodiscard]] std::map<std::string, double> per_sample() const;
 };
 
-/// What is said of a run as a whole.
+/// What report.json says of a run as a whole.
 struct RunReport {
   std::string scene, scene_hash;      // file as named when the cache was made
   std::string cache_folder;           // as named by the user
@@ -106,20 +106,19 @@ struct RunReport {
   bool interrupted = false;               // frames that were asked for are missing
   std::vector<std::string> parts;         // the ranges of steps asked for so far: "1-5"
   std::size_t frames = 0;                 // that are there
-  std::size_t resumed_frames = 0;         // done by other commands
+  std::size_t resumed_frames = 0;         // of these, done by other commands
   double resume_seconds = 0;              // to get to where frames were missing
 };
 
 /// All of report.json but `steps` and `frames`.
 [[nodiscard]] Json report_head_json(const RunReport& report);
-/// Its entry of `steps`, and its `options`.
+/// An entry of `steps`.
 [[nodiscard]] Json step_json(const StepReport& step);
-[[nodiscard]] Json options_json(const RunReport& report);
 
-/// The class of this name; colour for any other.
+/// The class of this name, other than base; colour for any other name.
 [[nodiscard]] ChangeClass change_class_of(std::string_view name);
 
-/// Largest resident set of this process so far.
+/// The largest resident set of this process so far.
 [[nodiscard]] std::uint64_t peak_rss_bytes();
 
 }  // namespace relook

@@ -1,5 +1,5 @@
 // The entries of a run's report, in the order of their frames, one at a time: a run of 10,000 steps has more of them
-// than should be in memory.
+// than should be in memory. ReportFile makes them, the run's page (cli/page/run_page.h) goes through them.
 #pragma once
 #include <cstddef>
 #include <functional>

@@ -1,5 +1,6 @@
 // RUN/report.json, written and read an entry at a time: `relook` first, an entry of `steps` a line, `frames` last. A
-// `seal` in each entry and one before `steps`, over all bytes before it, tell what was changed since.
+// `seal` in each entry and one before `steps`, over all bytes before it, tell what was changed since. Written by
+// cli/run/run_folder.h; RunLedger reads it back by the lines below.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -26,10 +27,10 @@ class ReportFile {
  public:
   /// `head`: report_head_json(). The file appears with publish(). Throws IoError, ResourceError, as all functions do.
   ReportFile(const std::filesystem::path& path, const Json& head);
-  /// In the order of the frames.
+  /// Adds an entry as step_json() makes it. Entries come in the order of their frames.
   void add(const Json& entry);
   void publish();
-  /// After publish(). Reads them from the file, which must stay as it is.
+  /// After publish(): the entries, read from the file. This and the file, as it is, must outlive what is returned.
   [[nodiscard]] ReportEntries entries() const;
 
  private:

@@ -20,7 +20,7 @@ void check_entry(const Json& entry);
 struct KnownFrame {
   std::string edits, source, frame, preview;
   bool is_numbered = false, is_drag = false;  // numbered: of a drag, otherwise of a wedge
-  bool is_base = false;        // before any step
+  bool is_base = false;                       // the frame before any step
   bool is_whole_step = false;  // a drag or wedge, which has no frame of its own
   std::uint64_t pixels = 0, samples = 0;
 };

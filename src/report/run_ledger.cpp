@@ -18,8 +18,7 @@ bool is_file(const std::filesystem::path& path) {
   return std::filesystem::is_regular_file(path, error);
 }
 
-}  // namespace
-
+/// The key of an entry. Throws InputError when it is none that step_json() makes.
 LedgerKey ledger_key(const Json& entry) {
   const JsonView view(entry, kReportName);
   const auto step = static_cast<std::uint32_t>(view.at("step").integer(0, kWholeStep));
@@ -29,12 +28,14 @@ LedgerKey ledger_key(const Json& entry) {
   return {step, kWholeStep};
 }
 
+}  // namespace
+
 RunLedger::RunLedger(std::filesystem::path run) : run_(std::move(run)) {
   read_report();
   read_progress();
 }
 
-/// Only a report that is laid out as report_file.h does it has its entries noted.
+/// Notes the entries of report.json, if it is laid out as report_file.h does it.
 void RunLedger::read_report() {
   const std::filesystem::path path = run_ / kReportName;
   if (!is_own_file(path, OwnKind::report)) return;
@@ -61,7 +62,8 @@ void RunLedger::read_report() {
   has_whole_report_ = read_entries() && has_seal;
 }
 
-/// Whether all of them are as they were written, each once and in their order, and what follows names their frames.
+/// Notes the entries. Whether all are as they were written, each once and in order, and what follows names their
+/// frames.
 bool RunLedger::read_entries() {
   const std::size_t refused = refused_;
   std::optional<Taken> last;
@@ -95,7 +97,8 @@ bool RunLedger::has_sound_end(std::uint64_t expected) {
   return frames == expected && end == kFramesEnd;
 }
 
-/// What was cut short, by a command that was killed as it wrote, is no surprise; other lines that make no sense are.
+/// Notes the entries and tasks of progress.jsonl. A line that was cut short, by a command that was killed as it wrote,
+/// is left out; any other line that makes no sense counts as refused.
 void RunLedger::read_progress() {
   const std::filesystem::path path = run_ / kProgressName;
   if (!is_file(path) || !is_own_file(path, OwnKind::progress)) return;
@@ -111,7 +114,7 @@ void RunLedger::read_progress() {
 }
 
 Json RunLedger::head_of(const Task& task, const Json& source) {
-  // As text in the order of the names: what tells the file comes first.
+  // Json sorts by name, so that `relook`, which tells what the file is, comes first.
   return {{"relook", "progress/2"},       {"source", source},
           {"steps_edits", task.edits},    {"steps_first", task.first_step},
           {"steps_fresh", task.is_fresh}, {"steps_last", task.last_step}};

@@ -1,5 +1,6 @@
-// What a run folder holds: the entries of its frames, those of report.json and those noted in progress.jsonl since, by
-// whatever command. Of an entry only its place in the file and the hash of its edits are in memory.
+// What a run's folder holds: the entries of its frames, those of report.json and those noted in progress.jsonl since,
+// by whatever command. Of an entry only its place in the file and the hash of its edits are in memory. Entries have
+// passed check_entry(); whether they are of the frames at hand, RunPlan (cli/run/run_plan.h) asks of agrees().
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -16,27 +17,26 @@
 
 namespace relook {
 
-/// A step, and within it the number of a frame of a drag or wedge; whole steps come after their frames.
+/// A step, and within it the number of a frame of a drag or wedge or kWholeStep: whole steps come after their frames.
 using LedgerKey = std::pair<std::uint32_t, std::uint32_t>;
 inline constexpr std::uint32_t kWholeStep = std::numeric_limits<std::uint32_t>::max();
-/// Of an entry as step_json() makes it. Throws InputError when it is none.
-[[nodiscard]] LedgerKey ledger_key(const Json& entry);
 
 class RunLedger {
  public:
   struct Note {
-    std::string edits;  // hash
+    std::string edits;  // hash of the edits up to the frame
     bool is_in_report = false;
     bool is_fresh = false;  // made by a command with --fresh that is not complete
-    std::uint64_t offset = 0;
+    std::uint64_t offset = 0;  // of the entry in its file, in bytes
     std::size_t bytes = 0;
   };
-  /// What a command that has not completed the run was, or is, to do.
+  /// What a command was, or is, to do that has begun since the run was complete last.
   struct Task {
     std::uint32_t first_step = 0, last_step = 0;
     std::string edits;  // hash after the last step
     bool is_fresh = false;
   };
+  /// The line of progress.jsonl with which a command begins.
   [[nodiscard]] static Json head_of(const Task& task, const Json& source);
 
   /// Reads what is there; lines that are cut short, were changed since or make no sense count as none. Throws
@@ -50,13 +50,13 @@ class RunLedger {
   /// What all its frames have in common (run_source.h); null when that is not known, as of a run of another version.
   [[nodiscard]] const Json& source() const { return source_; }
   [[nodiscard]] const std::map<LedgerKey, Note>& notes() const { return notes_; }
-  /// In the order in which they began.
+  /// The tasks in progress.jsonl, in the order in which they began.
   [[nodiscard]] const std::vector<Task>& tasks() const { return tasks_; }
   /// Whether report.json is of relook, but not laid out as this version does it.
   [[nodiscard]] bool has_foreign_report() const { return has_foreign_report_; }
   /// Whether report.json, if there is one, is as it was written.
   [[nodiscard]] bool has_whole_report() const { return has_whole_report_; }
-  /// Lines that should be entries and are not as they were written.
+  /// How many lines should be entries and are not as they were written.
   [[nodiscard]] std::size_t refused() const { return refused_; }
   [[nodiscard]] const Note* find(const LedgerKey& key) const;
   /// Throws InputError.
@@ -72,7 +72,7 @@ class RunLedger {
     LedgerKey key;
     std::string frame, hash;
   };
-  /// None: it is no entry.
+  /// Notes an entry; none if the text is no entry. `skipped`: bytes of the line before it.
   std::optional<Taken> take(std::string_view text, const LineReader& file, std::size_t skipped, bool is_in_report);
 
   std::filesystem::path run_;

@@ -17,7 +17,7 @@ Json run_source(const Json& manifest, const FrameStyle& style) {
           {"samples", content.at("samples").dump()},
           {"max_depth", content.at("max_depth").dump()},
           {"options", content.at("options")},
-          {"arithmetic", content.contains("arithmetic") ? content.at("arithmetic") : content.at("build")},
+          {"arithmetic", content.at("arithmetic")},
           {"frames", style.is_float ? "float" : "half"},
           {"layers", style.has_layers ? "layers" : "no layers"},
           {"view", style.view}};

@@ -52,7 +52,7 @@ RunSteps::Step read_step(const JsonView& view) {
   return step;
 }
 
-/// The settings that are not the same in all runs.
+/// The names of settings that are not the same in all runs.
 std::set<std::string> differing_settings(const std::vector<RunSteps>& runs) {
   std::set<std::string> names, differing;
   for (const RunSteps& run : runs)

@@ -1,4 +1,5 @@
-// Runs side by side, from their reports: a row for each step, a column for each run, as in Table 3 of the paper.
+// Runs side by side, from their reports: a row for each step, a column for each run, as in Table 3 of the paper. For
+// `relook compare`: its JSON, its text and its page.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -12,7 +13,7 @@
 
 namespace relook {
 
-/// What a table shows of a step: names and places in its entry of the report.
+/// What a table shows of a step: its name, and the JSON pointer to it in the step's entry of the report.
 struct Measure {
   std::string_view name, pointer;
   bool is_time = false;  // seconds, which differ from run to run; all else is counted
@@ -35,7 +36,7 @@ inline constexpr std::array<Measure, 15> kMeasures{{{"seconds", "/seconds/total"
 
 struct RunSteps {
   struct Step {
-    std::string label, name, change_class;  // "3", "3_01"
+    std::string label, name, change_class;  // label: "3", or "3_01" for a frame of a drag or wedge
     std::array<double, kMeasures.size()> values{};
   };
   std::string run, scene_hash, journal_hash;

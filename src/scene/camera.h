@@ -1,4 +1,5 @@
-// The fixed camera of a cache: chosen once from the command line, never edited.
+// The camera: chosen once from the command line (choose_camera(), look/look.h), stored in the cache and never edited.
+// camera_ray() makes the primary rays of a pixel's samples (image/sampling.h).
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Geometry of one glTF primitive as triangles in object space, and the encoded images that came with it. Immutable after
-// import; look documents name these by mesh and image name.
+// What a look document names but does not contain: meshes, each a glTF primitive as triangles in object space, and
+// encoded images. Made by the importer or read from a cache; those that are there never change, edits may add more.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace relook {
 
-/// What one morph target adds to each vertex at a weight of 1 (glTF 2.0 section 3.7.2.2). Each column is empty, where it
-/// adds nothing, or as long as the mesh's positions.
+/// What one morph target adds to each vertex at a weight of 1 (glTF 2.0 section 3.7.2.2). Each column is empty, where
+/// it adds nothing, or as long as the mesh's positions.
 struct MorphTarget {
   std::vector<Point> positions;
   std::vector<Normal> normals;
@@ -55,10 +55,10 @@ inline std::size_t Mesh::joint_count() const {
 /// An image as it was in the file: decoded only when a pyramid of it is needed.
 struct EncodedImage {
   std::string name;                     // look-document name
-  std::shared_ptr<const Bytes> bytes;   // PNG or JPEG; Radiance HDR or OpenEXR for environments
+  std::shared_ptr<const Bytes> bytes;   // PNG, JPEG, WebP, Radiance HDR or OpenEXR; null: the file had none
 };
 
-/// Everything a look document refers to by name but does not contain.
+/// Meshes and images by the names that a look document has for them.
 struct Assets {
   std::deque<Mesh> meshes;  // indexed by MeshId; addresses stay valid when meshes are added
   std::map<std::string, std::vector<MeshId>, std::less<>> mesh_primitives;  // look name of a mesh -> its primitives

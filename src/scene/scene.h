@@ -1,5 +1,6 @@
-// The scene, compiled from a look document: tables of plain values, ready for rays and colour programs. Ids are slots
-// that are never reused within a run; nothing that reaches a pixel may depend on their order: use the keys.
+// The scene, compiled from a look document (compile/state.h): tables of plain values, ready for rays and colour
+// programs. Ids are slots that are never reused for something else within a run; nothing that reaches a pixel may
+// depend on their order: use the keys.
 #pragma once
 #include <memory>
 #include <optional>
@@ -24,7 +25,7 @@ struct Displacement {
   bool operator==(const Displacement&) const = default;
 };
 
-/// What morph weights and joints make of a mesh (deformation.h).
+/// The morph weights and joints that bend a mesh (compile/deformation.h).
 struct Deformation {
   std::vector<float> weights;     // of the mesh's targets, in their order; empty: none adds anything
   std::vector<Transform> joints;  // inverse bind matrix, then the joint's place from the object's; empty: no skin
@@ -84,7 +85,7 @@ struct Environment {
 struct Scene {
   std::shared_ptr<const Assets> assets;
   Camera camera;
-  std::vector<Material> materials;  // indexed by MaterialId; the last of compile() is the default material
+  std::vector<Material> materials;  // indexed by MaterialId; the default material stands behind the first document's
   std::vector<Object> objects;      // indexed by ObjectId
   std::vector<Light> lights;        // indexed by LightId
   std::vector<LightId> light_order; // living lights by node name: the order of every sum over lights
@@ -97,8 +98,8 @@ struct Scene {
   [[nodiscard]] const Mesh& mesh(MeshId id) const { return assets->meshes[id.index()]; }
 };
 
-/// What one edit changed, with the values before it; the scene has those after it. Entities whose compiled value did not
-/// change do not appear. An object or light that did not live before has before.alive == false.
+/// What one edit changed, with the values before it; the scene has those after it. Entities whose compiled value did
+/// not change do not appear. An object or light that did not live before has before.alive == false.
 struct SceneDelta {
   struct MaterialChange { MaterialId id; Material before; };
   struct ObjectChange { ObjectId id; Object before; };

@@ -32,7 +32,7 @@ SurfaceOptics metallic_roughness_optics(const Material& m) {
   const bool has_metal = m.metallic * rough_max.b > 0;
   const bool has_dielectric = m.metallic * rough_min.b < 1;
   const bool has_specular = m.specular * texture_range(m.slot(Slot::specular)).second.a > 0;
-  // A film reflects where what it lies on does not.
+  // A film reflects where the surface below it does not.
   const bool has_film = m.iridescence * texture_range(m.slot(Slot::iridescence)).second.r > 0;
   optics.reflects = m.roughness * rough_min.g < kMirrorThreshold && (has_metal || has_specular || has_film);
   optics.coat_reflects =
@@ -41,7 +41,7 @@ SurfaceOptics metallic_roughness_optics(const Material& m) {
   optics.refracts = m.transmission * texture_range(m.slot(Slot::transmission)).second.r > 0 && has_dielectric;
   optics.volume = optics.refracts && m.thickness > 0;
   optics.bent = optics.volume;
-  // So does an ior of 0, and a specular colour above 1 beyond what the ior says.
+  // An ior of 0, which rays take for 1, and a specular colour above 1 reflect where the ior says that nothing is.
   const Color tint = m.specular_color;
   const bool is_bright = m.ior < 1 || std::max({tint.x, tint.y, tint.z}) > 1;
   optics.dielectric_cut = optics.refracts && !has_metal && !has_film && !is_bright;

@@ -1,6 +1,7 @@
 // Which rays a hit on a surface spawns, and whether light passes through: the part of a material that decides the shape
 // of ray trees. A pure function of the material and the mesh, never of the hit, so that "optical" (Table 1) can be told
-// from values: an edit is optical exactly when this, or what bends the spawned rays, changes.
+// from values: an edit is optical exactly when this, or what bends the spawned rays, changes. Called for every object
+// that rays meet (trace/ray_scene.cpp), and for materials that an edit changes (edit/, replay/).
 #pragma once
 #include "scene/material.h"
 #include "scene/mesh.h"

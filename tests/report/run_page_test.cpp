@@ -112,7 +112,7 @@ TEST(RunPage, the_step_of_a_drag_shares_the_last_frame_and_labels_are_as_wide_as
   run.journal.steps.resize(2);
   for (const char* within : {"_001", "_002", "_003"}) run.add(2, within);
   run.add_sharing(2);
-  run.add(3)["kept"] = true;
+  run.add(3)["resumed"] = true;
   run.entries[1]["pixels_changed"] = 5000;
   run.write_report();
   run.write_page();

@@ -180,7 +180,7 @@ class RunReport {
   }
 
   overlayNames() {
-    const names = { dependent: "depends on the edit", touched: "tunnels touched", groups: "groups", tunnels: "tunnels" };
+    const names = { dependent: "depends on the edit", touched: "tunnels touched", groups: "groups" };
     return Object.entries(names).filter(([kind]) => this.stepDetails?.overlays?.includes(kind));
   }
 

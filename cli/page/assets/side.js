@@ -23,7 +23,7 @@ function stepParts(step, details, fullSeconds) {
   parts.push(...under("Cost", page.table(stepCosts(step, fullSeconds))));
   parts.push(...under("Files", page.element("div", {}, page.element("code", {}, step.frame)),
     page.element("div", {}, page.element("code", {}, step.preview))));
-  if (details?.resumed || details?.kept) parts.push(...under("Kept", "This frame is from an earlier run of the same inputs."));
+  if (details?.resumed) parts.push(...under("Kept", "This frame is from an earlier run of the same inputs."));
   return parts;
 }
 

@@ -7,7 +7,7 @@
 namespace relook {
 namespace {
 
-/// What in a node may change, beside its own parameters.
+/// What of the colours that a node combines may change, beside its own parameters.
 struct ChangingBelow {
   WideLightSet tints;
   BranchSet children;
@@ -86,7 +86,7 @@ class Compressor {
         });
   }
 
-  /// What does not change of trees that do: evaluated once.
+  /// Evaluates the nodes and filters that do not change, in trees that do.
   void evaluate_known() {
     c_.memory.colors.filters.resize(block_.filters.size());
     c_.memory.colors.nodes.resize(block_.nodes.size());

@@ -1,4 +1,6 @@
-// From ray trees to compressed colour trees (paper 3.3).
+// From the ray trees of a block to compressed colour trees (paper 3.3): finds the nodes that a set of parameters can
+// reach, evaluates what hangs on them and cannot change, and stores the columns of the others. Called by
+// Shader::compress().
 #pragma once
 #include "color/compress/compressed_block.h"
 
@@ -6,7 +8,7 @@ namespace relook {
 
 class NodePrograms;
 
-/// What compressing needs beside the trees; `memory` is working memory.
+/// What compressing needs beside the trees. `programs`: of the block's nodes; `memory`: working memory.
 struct CompressContext {
   const ColorScene& scene;
   NodePrograms& programs;

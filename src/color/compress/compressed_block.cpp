@@ -6,7 +6,7 @@
 namespace relook {
 namespace {
 
-/// A compressed batch as what a residual kernel runs over.
+/// The lanes of a compressed batch, as a residual kernel loads them.
 class CompressedLanes {
  public:
   CompressedLanes(const CompressedBatch& batch, const BlockColors& colors) : batch_(batch), colors_(colors) {}
@@ -24,7 +24,8 @@ class CompressedLanes {
   }
 
  private:
-  /// More columns than a processor follows by itself are read side by side: what comes next is asked for now.
+  /// The values of a column from lane `first` on. Asks for those of the next block already: there are more columns than
+  /// a processor's prefetcher follows.
   [[nodiscard]] const float* column_at(const CompressedBatch::Stored& stored, std::size_t first) const {
     constexpr std::size_t kVectors = kLanes / kVectorLanes;
     const CompressedBatch::Vector* column = batch_.values.data() + stored.first + first / kVectorLanes;
@@ -55,7 +56,7 @@ bool is_one_value(const float* values, std::size_t lanes) {
   return true;
 }
 
-/// Columns that hold one value, or the values of an earlier column, are not kept.
+/// Drops columns that hold one value, or the values of an earlier column, and notes where their values are.
 void drop_repeated(CompressedBatch& batch) {
   using Vector = CompressedBatch::Vector;
   const std::size_t lanes = batch.lanes(), length = whole_vectors(lanes) / kVectorLanes;

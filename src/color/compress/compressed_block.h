@@ -1,6 +1,7 @@
 // Colour trees compressed for a set of parameters (paper 3.3): of some ray trees, for each node that the parameters can
 // reach the columns of its residual program, and how these nodes hang together. Evaluating it gives the colours of the
-// trees for the parameters' current values, bit for bit as evaluating them whole.
+// trees for the parameters' current values, bit for bit as evaluating them whole. Made by Shader::compress(), kept and
+// evaluated by replay/compressed_edits.h.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,7 +18,8 @@
 
 namespace relook {
 
-/// Split programs by what may change in them; thread-safe. One for each set of parameters.
+/// Split programs by what may change in them, made on first use; thread-safe. There is one table for each set of
+/// parameters.
 class SplitTable {
  public:
   [[nodiscard]] const SplitProgram& get(const ColorProgram& program, const ChangingLeaves& leaves);
@@ -29,9 +31,9 @@ class SplitTable {
 
 /// Nodes (or filters) that share a residual program and what its parameters point to.
 struct CompressedBatch {
-  /// Where a column's values are, or the one that all lanes share.
+  /// Where the values of a column are, or the one value that all its lanes share.
   struct Stored {
-    std::uint32_t first = kShared;  // vector, into values
+    std::uint32_t first = kShared;  // index of its first vector in `values`
     float shared = 0;
   };
   static constexpr std::uint32_t kShared = 0xFFFFFFFFU;
@@ -45,7 +47,7 @@ struct CompressedBatch {
   std::vector<std::uint32_t> out;                           // [lanes] slots for the results
   std::array<std::vector<std::uint32_t>, kBranches> child;  // [lanes] slots of changing children
   std::vector<std::pair<std::uint32_t, std::vector<LightLink>>>
-      tints;  // by place of a changing light, in order: [lanes] filters
+      tints;  // by increasing place of a changing light in the light order: [lanes] slots of its filters
   std::vector<Stored> columns;
   std::vector<Vector> values;  // one column after the other, rounded up to whole vectors
 
@@ -53,34 +55,34 @@ struct CompressedBatch {
   [[nodiscard]] std::size_t bytes() const;
 };
 
-/// What evaluated columns depend on: they hold while none of it changes.
+/// The parameters that columns were evaluated with: the columns hold while none of them changes.
 class Baked {
  public:
-  /// Requires: of its lights each once, in order.
+  /// Requires: read.lights are sorted, each once.
   void add(MaterialId material, const Dependencies& read);
   [[nodiscard]] bool depends_on(const ParameterSet& changed) const;
-  /// Is the material met at all, so that another structure of it would ask for other programs?
+  /// Has add() noted the material? Then another structure of it would ask for other programs.
   [[nodiscard]] bool has(MaterialId material) const;
 
  private:
   std::vector<std::pair<MaterialId, FieldMask>> materials_;
-  std::vector<LightId> lights_;  // in order
+  std::vector<LightId> lights_;  // sorted
   bool ambient_ = false, environment_ = false;
 };
 
 struct CompressedBlock {
-  std::vector<std::uint32_t> roots;      // which trees of the block depend on the parameters, increasing
-  std::uint32_t nodes = 0, filters = 0;  // slots; those of `roots` come first
+  std::vector<std::uint32_t> roots;      // places in the given roots of trees that depend on the parameters, increasing
+  std::uint32_t nodes = 0, filters = 0;  // numbers of slots; those of `roots` come first
   std::vector<std::pair<std::uint32_t, Rgba>> known_filters;  // slots of filters that do not depend on the parameters
   std::vector<CompressedBatch> batches;                       // filters first, then nodes, each after its children
   Baked baked;
 
   [[nodiscard]] std::size_t bytes() const;
-  /// The colours of `roots`, in memory.colors.nodes: they come first.
+  /// [roots]: their colours, which stay in memory.colors.nodes.
   [[nodiscard]] std::span<const Rgba> evaluate(const Scene& scene, ColorMemory& memory) const;
 };
 
-/// Stores the outputs of a batch's constants as columns. `nodes`: of the batch.
+/// Evaluates the constant part of a batch's program and stores its outputs as columns. `nodes`: those of the batch.
 void store_columns(CompressedBatch& batch, const Scene& scene, const NodeBatch& nodes, Scratch& scratch);
 
 }  // namespace relook

@@ -124,14 +124,14 @@ class Splitter {
     return count == 1;
   }
 
-  /// The program from the columns on.
+  /// The program with its columns as inputs.
   Kernel residual(const std::vector<Value>& columns) const {
     Code code = code_;
     for (std::size_t k = 0; k < columns.size(); ++k) code[columns[k]] = {Op::column, Payload::number(static_cast<std::uint32_t>(k)), {}};
     return make_kernel(code, {program_.result.begin(), program_.result.end()});
   }
 
-  /// Its lights each once, in order.
+  /// What these values are computed from. The lights are sorted, each once.
   Dependencies read_by(const std::vector<Value>& values) const {
     std::vector<bool> needed(code_.size());
     for (Value value : values) needed[value] = true;

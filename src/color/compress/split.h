@@ -1,6 +1,6 @@
 // Partial evaluation of colour programs (paper 3.3): what a set of changing leaves cannot alter becomes stored columns,
 // one value a sample; a residual program keeps the chain from these leaves to the result. No operation is
-// re-associated, so the residual yields the program's bits.
+// re-associated, so the residual yields the program's bits. Called by SplitTable (compressed_block.h).
 #pragma once
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace relook {
 
 /// Leaves whose values may differ from one evaluation to the next.
 struct ChangingLeaves {
-  FieldMask fields = 0;         // of the node's material, without kMappingMask: places of lookups cannot change
+  FieldMask fields = 0;         // of the node's material, none of kMappingMask: where textures are looked up is fixed
   std::vector<LightId> lights;  // their colour parameters
   bool ambient = false, environment = false;
   BranchSet children;  // colours of child rays

@@ -38,7 +38,7 @@ NodeRecord& Compilation::editable_record(const std::string& node) {
   return record->second;
 }
 
-/// Before the first change of a node that was there.
+/// Notes a node as it was. To be called before its first change in this run.
 void Compilation::note(const std::string& node, const NodeRecord& record) {
   if (notes_history_) old_nodes_.try_emplace(node, record);
 }
@@ -101,7 +101,8 @@ void Compilation::forget_node(const std::string& node) {
   index_.nodes.erase(found);
 }
 
-/// The nodes to start from, parents before children. Fails on a node that is its own ancestor.
+/// The nodes to start from, by depth: those that were touched or have another parent. Fails on a node that is its own
+/// ancestor.
 std::vector<Compilation::NodeVisit> Compilation::visits(const Entities& entities) {
   std::vector<NodeVisit> visits;
   // `value`: null if it is still to be found.
@@ -190,7 +191,7 @@ bool Compilation::visit_node(const std::string& name, const Json& node, NodeReco
   return is_changed;
 }
 
-/// Nodes whose skin has this joint.
+/// Notes the nodes whose skin has this joint: they are compiled again once all joints are where they belong.
 void Compilation::note_skins_of(const std::string& joint) {
   if (!notes_history_ || document_.look["skins"].empty()) return;  // at first all nodes are visited
   const auto users = index_.users.find({"nodes", joint});
@@ -224,12 +225,12 @@ Pose Compilation::pose_of(const Json& node) const {
                });
 }
 
-/// Of what stands in the world: a node that carries nothing may be anywhere.
+/// Fails if something that a node carries is out of range; a node that carries nothing may be anywhere.
 void Compilation::require_range(const WideTransform& world, const std::string& node) const {
   if (!is_in_range(world)) fail(node_pointer(node), "the node's place in the world is out of range (1e12)");
 }
 
-/// Local matrices of EXT_mesh_gpu_instancing, or nullptr.
+/// The local matrices of a node with EXT_mesh_gpu_instancing, or null.
 const std::vector<Transform>* Compilation::instances_of(const Json& node) const {
   const Json* key = member_at(node, {"extras", "relook", "instances"});
   if (key == nullptr) return nullptr;

@@ -1,3 +1,5 @@
+// The frame of a compilation: what to compile, checks, materials and the scene entry, the delta, and the way back after
+// an error. compile_nodes.cpp has the nodes.
 #include "scene/compile/compile_scene.h"
 
 #include <algorithm>
@@ -47,7 +49,7 @@ void Compilation::run_first(const std::vector<CompiledEntity>& entities) {
   compile(entities);
 }
 
-/// All of them before any is compiled: what an entity refers to may be touched as well.
+/// Checks all entities before any is compiled: what one refers to may have been touched as well.
 void Compilation::check(const Entities& entities) const {
   for (const Entity& entity : entities)
     if (entity.value != nullptr) check_entity(document_, entity.place, *entity.value, context_.file);

@@ -1,5 +1,6 @@
-// One compilation step of a scene: from the entries of the look document that were touched to the tables that depend on
-// them, along the references between entries. All or nothing; its cost follows what was touched and its users.
+// One compilation of a scene: from the entries of the look document that were touched to the tables that depend on
+// them, along the references between entries. All or nothing; its cost follows what was touched and its users. Run by
+// SceneState (state.h) when a document is opened and after every edit.
 #pragma once
 #include <functional>
 #include <map>
@@ -23,7 +24,7 @@ struct NodeRecord {
   WideTransform world;
   bool visible = true;                           // itself and all its ancestors
   bool is_compiled = false;                      // false until its first visit
-  std::uint64_t last_start = 0, last_visit = 0;  // SceneIndex::runs when a visit started from it, and when one came by
+  std::uint64_t last_start = 0, last_visit = 0;  // SceneIndex::runs when a visit last started here, and came by
   std::vector<ObjectId> objects;                 // of its mesh
   LightId light;
 };
@@ -34,7 +35,8 @@ struct TouchedEntityHash {
   }
 };
 
-/// Names to slots, and who refers to whom. Slots of entities that were removed stay for their return.
+/// The compiler's memory from one edit to the next: names to slots, and who refers to whom. Slots of entities that were
+/// removed stay for their return.
 struct SceneIndex {
   std::uint64_t runs = 0;  // compilations so far
   std::unordered_map<std::string, NodeRecord> nodes;
@@ -54,7 +56,7 @@ inline constexpr std::size_t kMostAddedObjects = 500'000;
 struct CompiledEntity {
   TouchedEntity place;
   const Json* value = nullptr;  // null: removed
-  bool is_touched = false;      // itself, not only what it refers to
+  bool is_touched = false;      // by the edit; false: only something that it refers to was
 };
 
 /// Every entity of the document in the order of their places, for a compilation from scratch.
@@ -66,10 +68,11 @@ class Compilation {
               std::string_view file)
       : document_(document), scene_(scene), index_(index), context_{document, pyramids, file} {}
 
-  /// What was touched and its users. Throws InputError with scene and index as before.
+  /// Compiles what was touched and its users. Throws InputError; scene and index are then as before.
   SceneDelta run(const std::vector<TouchedEntity>& touched);
-  /// Entities of a new scene, checked (look_check.h), of increasing places and without users as yet. Notes nothing of
-  /// what was there before: an error ends the scene.
+  /// Compiles entities of a new scene, by increasing place, which check_entity() (look_check.h) has passed and which
+  /// have no users as yet. Throws InputError; the scene is then of no use, since nothing is noted of what was there
+  /// before.
   void run_first(const std::vector<CompiledEntity>& entities);
 
  private:
@@ -123,7 +126,7 @@ class Compilation {
   Scene& scene_;
   SceneIndex& index_;
   CompileContext context_;
-  bool notes_history_ = true;  // of what was there before
+  bool notes_history_ = true;  // notes what was there before; not in run_first()
 
   std::vector<std::string> adopted_;  // nodes with another parent than before
   std::set<std::string> skinned_;     // nodes to compile when all joints are where they belong

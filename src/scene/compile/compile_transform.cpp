@@ -34,7 +34,7 @@ WideTransform matrix_of(const Json& node, std::string_view file, const std::stri
 
 using Vector = Imath::V3d;
 
-/// Where the axes go.
+/// Where the three axes go.
 std::array<Vector, 3> rows_of(const Transform& m) {
   std::array<Vector, 3> rows;
   for (std::size_t row = 0; row < 3; ++row)
@@ -43,7 +43,7 @@ std::array<Vector, 3> rows_of(const Transform& m) {
   return rows;
 }
 
-/// Perpendicular to all three, which lie in a plane.
+/// A vector perpendicular to all three, which lie in a plane.
 Vector largest_cross(const std::array<Vector, 3>& vectors) {
   Vector largest(0, 0, 0);
   for (std::size_t i = 0; i < 3; ++i) {

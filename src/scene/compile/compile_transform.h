@@ -1,5 +1,6 @@
 // Node transforms of a look document in double precision: composed root to leaf and rounded to float once, so that an
-// incremental compilation gives the same bits as one from scratch.
+// incremental compilation gives the same bits as one from scratch. Called by the compiler, look_bounds.h and, for
+// sheets, trace/ray_scene.cpp.
 #pragma once
 #include <string>
 #include <string_view>
@@ -18,7 +19,8 @@ using WideTransform = Imath::M44d;
 /// Every entry finite and at most 1e12: what rays can work with.
 [[nodiscard]] bool is_in_range(const WideTransform& world);
 
-/// What a mesh becomes: 3, a body; 2, a sheet (a scale of 0 along one axis); less, a line or a point, which cannot be seen.
+/// What a transform makes of a mesh: 3, a body; 2, a sheet (a scale of 0 along one axis); less, a line or a point,
+/// which cannot be seen.
 [[nodiscard]] int dimensions_of(const Transform& to_world);
 
 /// A transform that flattens, in two parts: `flatten` within object space, along what the transform loses, and an
@@ -30,7 +32,7 @@ struct SheetTransform {
 /// Requires: dimensions_of(to_world) == 2.
 [[nodiscard]] SheetTransform sheet_transform(const Transform& to_world);
 
-/// Relative to `eye`.
+/// To floats, with the translation counted from `eye`; and back to doubles.
 [[nodiscard]] Transform rounded(const WideTransform& world, const WidePoint& eye);
 [[nodiscard]] WideTransform widened(const Transform& local);
 

@@ -1,5 +1,6 @@
-// Morph targets and skins (glTF 2.0 sections 3.7.2.2 and 3.7.3): the mesh that weights and joints make, object by
-// object.
+// Morph targets and skins (glTF 2.0 sections 3.7.2.2 and 3.7.3), object by object. The compiler turns weights and
+// joints of the look document into a Deformation (deformation_of()); trace/ray_scene.cpp bends the mesh by it
+// (deformed()).
 #pragma once
 #include <functional>
 #include <span>
@@ -28,7 +29,8 @@ struct Pose {
 /// The morph weights of a node, or else of its mesh, as entries of the look document; null without any.
 [[nodiscard]] const Json* weights_of(const Json& node, const Json& mesh);
 
-/// What these make of a primitive; none if nothing. A primitive without joints keeps the transform of its node.
+/// The deformation of a primitive by these, of which it may have no use; none if it stays as it is. A primitive without
+/// joints keeps the transform of its node.
 [[nodiscard]] SharedDeformation deformation_of(const Mesh& mesh, const Json* weights, const Pose& pose);
 
 }  // namespace relook

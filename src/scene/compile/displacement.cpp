@@ -19,7 +19,7 @@ Normal unit_or_zero(const Normal& n) {
   return scaled / std::sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
 }
 
-/// Vertices at the same position, whatever their uv: the index of the first of them.
+/// [vertices]: the first vertex at the same position, whatever its uv.
 std::vector<std::uint32_t> welded(const std::vector<Point>& positions) {
   struct Hash {
     std::size_t operator()(const Point& p) const {
@@ -78,7 +78,7 @@ class Midpoints {
   std::unordered_map<std::uint64_t, std::uint32_t> vertices_;
 };
 
-/// One round of 1-to-4 subdivision; primitive i becomes 4i .. 4i + 3.
+/// One round of 1-to-4 subdivision; triangle i becomes 4i .. 4i + 3.
 void subdivide(Mesh& mesh) {
   Midpoints midpoints(mesh);
   std::vector<std::array<std::uint32_t, 3>> finer;

@@ -1,4 +1,5 @@
-// Displacement maps (Table 1, geometrical manipulation): a mesh moved along its normals by a texture, object by object.
+// Displacement maps (Table 1 of the paper, geometrical manipulation): a mesh moved along its normals by a texture,
+// object by object. The compiler limits the size, trace/ray_scene.cpp moves the vertices.
 #pragma once
 #include "scene/mesh.h"
 #include "scene/scene.h"

@@ -11,7 +11,7 @@ namespace relook {
 
 namespace {
 
-/// All entities of the document, checked before any is compiled: materials read textures, textures images.
+/// All entities of the document, checked before any is compiled, since materials read textures, and textures images.
 std::vector<CompiledEntity> checked_entities(const LookDocument& document) {
   std::vector<CompiledEntity> entities = all_entities(document);
   for (const CompiledEntity& entity : entities) {
@@ -21,7 +21,7 @@ std::vector<CompiledEntity> checked_entities(const LookDocument& document) {
   return entities;
 }
 
-/// Into a scene that has its assets and its camera alone.
+/// Compiles a whole document. `scene` has its assets and its camera, and nothing else; `index` is empty.
 void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index) {
   const std::vector<CompiledEntity> entities = checked_entities(document);
   decode_images(document, pyramids);

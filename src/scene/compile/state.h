@@ -1,5 +1,6 @@
-// A look document and the scene compiled from it, kept in step: after an edit only the entities that it touched are
-// compiled again, and the result equals a compilation from scratch (up to the order of ids).
+// A look document and the scene compiled from it, kept in step: after an edit only the entities that it touched, and
+// their users, are compiled again, and the result equals a compilation from scratch up to the order of ids. Made when a
+// scene or a cache is opened (cli/input/), owned by the Replayer while it replays, changed by edit/ alone.
 #pragma once
 #include <memory>
 #include <string>
@@ -46,21 +47,22 @@ class SceneState {
   /// the caller's to restore). An edit that moves or hides the active camera is an error.
   SceneDelta recompile(const std::vector<TouchedEntity>& touched, std::string_view file);
 
-  /// For a rehearsal of edits that were undone again: drops the slots they left behind. Requires them to be dead.
   [[nodiscard]] SlotCounts slot_counts() const;
+  /// After a rehearsal of edits that were undone again: drops the slots that these have added since slot_counts() gave
+  /// `counts`. Requires: the slots are dead.
   void drop_slots_after(const SlotCounts& counts);
 
  private:
   LookDocument document_;
   std::shared_ptr<PyramidStore> pyramids_;
   Scene scene_;
-  // The compiler's own indices (names to ids, children to parents, users of a texture) go here.
-  struct Index;
+  struct Index;  // the compiler's SceneIndex (compile_scene.h)
   std::shared_ptr<Index> index_;
 };
 
-/// The scene of a document with all its defaults, such as that of a SceneState, compiled from scratch: the one that
-/// SceneState keeps up, in other slots perhaps, without a copy of the document. Throws InputError as SceneState does.
+/// Compiles a document that has all its defaults, such as a SceneState's, from scratch and without a copy of it. The
+/// result is the scene that a SceneState keeps up, in other slots perhaps. Throws InputError{document.file, pointer,
+/// ...}.
 [[nodiscard]] Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids);
 
 }  // namespace relook

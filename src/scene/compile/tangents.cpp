@@ -9,7 +9,7 @@ namespace {
 
 using Wide = Imath::V3d;
 
-/// What makes vertices one, bit by bit.
+/// The bits of a vertex's position, normal and texture coordinates: vertices with the same key are one.
 using VertexKey = std::array<std::uint32_t, 8>;
 struct VertexKeyHash {
   std::size_t operator()(const VertexKey& key) const {
@@ -29,7 +29,7 @@ VertexKey key_of(const Mesh& mesh, std::uint8_t texcoord, std::uint32_t vertex) 
   return key;
 }
 
-/// By vertex: the first place among those that are the same.
+/// [vertices]: the first vertex with the same key.
 std::vector<std::uint32_t> shared_vertices(const Mesh& mesh, std::uint8_t texcoord) {
   std::vector<std::uint32_t> shared(mesh.positions.size());
   std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
@@ -44,12 +44,13 @@ Wide unit_or_zero(const Wide& v) {
   return length > 1e-30 ? v / length : Wide(0, 0, 0);
 }
 
-/// Laid into the plane across a unit normal.
+/// `v` laid into the plane across a unit normal, as a unit vector or zero.
 Wide across(const Wide& v, const Wide& normal) { return unit_or_zero(v - normal * normal.dot(v)); }
 
 double angle_between(const Wide& a, const Wide& b) { return std::acos(std::fmin(std::fmax(a.dot(b), -1.0), 1.0)); }
 
-/// Along u in object space, and whether u and v turn as in the image; zero where the triangle has no area in either.
+/// The direction of u on a triangle in object space, zero where the triangle has no area in space or in the texture;
+/// and whether the texture lies mirrored on it.
 struct Axis {
   Wide along_u{0, 0, 0};
   bool is_mirrored = false;
@@ -65,7 +66,7 @@ Axis axis_of(const std::array<Wide, 3>& p, const std::array<Uv, 3>& uv) {
 
 CornerTangents derive_tangents(const Mesh& mesh, std::uint8_t texcoord) {
   const std::vector<std::uint32_t> shared = shared_vertices(mesh, texcoord);
-  // Two places a vertex, for each handedness one.
+  // Two places a vertex, one for each handedness.
   std::vector<Wide> sums(2 * shared.size(), Wide(0, 0, 0));
   CornerTangents result;
   result.corners.resize(mesh.triangles.size());

@@ -1,5 +1,6 @@
 // Tangents of a mesh that brings none: from positions, normals and one set of texture coordinates, as MikkTSpace
 // defines them (Mikkelsen 2008, "Simulation of Wrinkled Surfaces Revisited"; glTF 2.0 section 3.7.2.1 asks for it).
+// Called by trace/ray_scene.cpp for objects whose material needs a frame.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Where a value of a JSON document is, without a string for what turns out to be right.
+// Where a value of a JSON document is, without a string for what turns out to be right: for the checks that walk over
+// whole documents (look_walk.cpp, gltf/check/gltf_values.cpp).
 #pragma once
 #include <string>
 #include <string_view>

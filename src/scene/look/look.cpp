@@ -1,5 +1,6 @@
-// glTF to look document: arrays become objects keyed by unique name, indices become names, every default is filled in,
-// what relook does not support is left out.
+// glTF to look document, make_look_document(): arrays become objects keyed by unique name, indices become names, every
+// default is filled in, what relook does not support is left out, and so are nodes that the active scene does not
+// reach.
 #include "scene/look/look.h"
 
 #include "scene/gltf/check/gltf_use.h"
@@ -32,7 +33,7 @@ std::vector<std::string> names_of(const Json& items, std::string_view noun) {
   return names;
 }
 
-/// Their names in the order of the file.
+/// Fills document.cameras. Returns the cameras' names in the order of the file. `active`: nodes of the active scene.
 std::vector<std::string> name_cameras(const Json& gltf, const std::vector<std::size_t>& active,
                                       LookDocument& document) {
   const Json& cameras = member_or_empty(gltf, "cameras");
@@ -55,14 +56,14 @@ void name_variants(const Json& gltf, LookDocument& document) {
     document.look["extensions"]["KHR_materials_variants"]["variants"] = names_of(variants, "variant");
 }
 
-/// name_indices() for nodes' cameras, whose table has no order: in one step each, for any number of both.
+/// Puts the name of a node's camera where its index is. name_indices() would search all cameras for each node.
 void name_camera(const std::vector<std::string>& cameras, Json& node) {
   const Json& index = member_or_empty(node, "camera");
   if (index.is_number_unsigned() && index.get<std::size_t>() < cameras.size())
     node["camera"] = cameras[index.get<std::size_t>()];
 }
 
-/// The most targets of the primitives of a mesh.
+/// The most morph targets that a primitive of the mesh has.
 std::size_t target_count(const LookDocument& document, const std::string& mesh) {
   std::size_t count = 0;
   if (const auto found = document.assets->mesh_primitives.find(mesh); found != document.assets->mesh_primitives.end())
@@ -70,7 +71,7 @@ std::size_t target_count(const LookDocument& document, const std::string& mesh) 
   return count;
 }
 
-/// As many weights as there are targets: 0 where none is given.
+/// Makes `weights` as many as there are targets, 0 where none is given.
 void fit_weights(Json& value, std::size_t targets) {
   if (targets == 0) {
     value.erase("weights");
@@ -84,7 +85,8 @@ void fit_weights(Json& value, std::size_t targets) {
   weights = std::move(fitted);
 }
 
-/// The weights of a node, or else of its mesh, where edits find them (glTF 2.0 section 3.7.2.2).
+/// Gives a node the weights of its mesh where it has none of its own, so that edits find them at the node (glTF 2.0
+/// section 3.7.2.2).
 void give_weights(const LookDocument& document, Json& node) {
   const Json& mesh = member_or_empty(node, "mesh");
   const auto found = mesh.is_string() ? document.look["meshes"].find(mesh.get_ref<const std::string&>())
@@ -146,7 +148,7 @@ Json active_scene(const Json& gltf) {
   return scene;
 }
 
-/// Glass with a volume, whose back faces are seen through its front ones. Of values that nothing has checked yet.
+/// Is a material glass with a volume, whose back faces are seen through its front ones? Its values are not checked yet.
 bool is_solid(const Json& material) {
   const auto is_positive = [&](const char* pointer) {
     const Json::json_pointer at(pointer);

@@ -1,5 +1,6 @@
-// The look document, in which every editable property has one address: the glTF JSON with names for indices and every
-// default filled in. Objects keyed by name: materials, textures, images, samplers, meshes, lights, nodes; plus `scene`.
+// The look document: the glTF JSON with names for indices and every default filled in, so that every property that can
+// be edited has one address. Its members are the sections below, objects keyed by name, and `scene` and `extensions`.
+// Made from an imported file or read from a cache; edit/ patches it, compile/ turns it into a Scene.
 #pragma once
 #include <map>
 #include <memory>
@@ -20,26 +21,27 @@ inline constexpr std::size_t kSectionCount = 8;
 
 /// A look document with what it refers to.
 struct LookDocument {
-  Json look;                                                  // see README, "The look document"
+  Json look;                                                  // see README.md, "The look document"
   std::array<std::vector<std::string>, kSectionCount> order;  // glTF index -> name, per section (numbers as names)
   std::map<std::string, std::vector<Transform>, std::less<>> instances;  // node name -> EXT_mesh_gpu_instancing
   std::map<std::string, std::vector<Transform>, std::less<>> inverse_binds;  // skin name -> a matrix a joint
-  Json cameras;  // glTF cameras by name: {"node": name, "camera": {...}}
+  Json cameras;  // glTF cameras by name: {"node": name or "", "camera": {...}, "index": glTF's}
   std::shared_ptr<Assets> assets;
   std::string file;  // for messages
 };
 
-[[nodiscard]] LookDocument make_look_document(ImportedGltf imported);  // LookError: what the importer cannot tell
+/// Throws LookError for what the importer does not check.
+[[nodiscard]] LookDocument make_look_document(ImportedGltf imported);
 
 /// Fills the defaults of one value of a section in place (an added material, node, ...). Idempotent.
 void fill_defaults(Section section, Json& value);
 
-/// --lights auto: adds lights and nodes `key`, `fill` and `rim`, which shine from outside, and a `lamp` at a camera in a
-/// closed room, which is said in a sentence; "" without.
+/// --lights auto: adds lights and nodes `key`, `fill` and `rim`, which shine from outside, and a `lamp` at the camera
+/// if it stands in a closed room. Returns a sentence about the lamp, or "" if there is none.
 [[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera);
 
-/// Resolves --camera NAME | auto | EYE:TARGET:FOV ("" takes the only or first camera) at a resolution in pixels.
-/// Throws InputError naming the flag when the scene has no camera.
+/// Resolves --camera NAME | auto | EYE:TARGET:FOV ("" takes the first camera) at a resolution in pixels. Throws
+/// InputError when the scene has no such camera or nothing to frame, UsageError for a wrong EYE:TARGET:FOV.
 [[nodiscard]] Camera choose_camera(const LookDocument& document, std::string_view choice, std::uint32_t width,
                                    std::uint32_t height);
 

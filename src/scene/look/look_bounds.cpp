@@ -27,7 +27,7 @@ WideTransform own_transform(const Json& node, const LookDocument& document, cons
   return local_transform(without, document.file, pointer);
 }
 
-/// `unscaled`: a node whose own scale is left out.
+/// Every node's place in the world. `unscaled`: a node whose own scale is left out.
 std::map<std::string, Place> places_of(const LookDocument& document, std::string_view unscaled = {}) {
   const Json& nodes = document.look.at("nodes");
   std::set<std::string> children;
@@ -55,7 +55,7 @@ std::map<std::string, Place> places_of(const LookDocument& document, std::string
   return places;
 }
 
-/// Of a node whose skin is whole: wrong ones are for the compiler to refuse.
+/// The pose of a node whose skin is whole; none for others, which the compiler refuses.
 Pose pose_of(const LookDocument& document, const std::map<std::string, Place>& places, const Json& node) {
   const Json* name = member(node, "/skin");
   if (name == nullptr) return {};

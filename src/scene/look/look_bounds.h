@@ -1,5 +1,5 @@
-// Where the nodes of a look document stand in the world, without compiling it: for cameras,
-// automatic lights and warnings.
+// Where the nodes of a look document stand in the world, without compiling it: for cameras (camera.cpp), automatic
+// lights (look_lights.cpp) and warnings (look_warnings.cpp). Requires: check_values() (look_check.h) passed.
 #pragma once
 #include <functional>
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace relook {
 
-/// World matrix of a node that hangs on a root, without the node's own scale: what a camera on it has.
+/// The world matrix of a node of the document, without the node's own scale: what a camera on it has.
 [[nodiscard]] WideTransform unscaled_transform(const LookDocument& document, const std::string& node);
 
 /// A primitive as a node, or an instance of it, shows it: deformed, but not displaced.
 using PlacedMeshVisit = std::function<void(const std::string& node, const Mesh& mesh, const WideTransform& world)>;
-/// Everything visible, by node name. Requires: check_values() passed.
+/// Visits the meshes of all visible nodes, by node name.
 void for_each_placed_mesh(const LookDocument& document, const PlacedMeshVisit& visit);
 
-/// Every visible node with its place in the world.
+/// Visits every visible node with its world matrix.
 void for_each_place(const LookDocument& document,
                     const std::function<void(const std::string& name, const Json& node, const WideTransform&)>& visit);
 

@@ -1,6 +1,6 @@
 // --lights auto: a key, a fill and a rim light, as directional lights placed relative to the camera, so that they do
-// not depend on the size of the scene. A white diffuse surface that faces the key alone is about 0.8. Where none of
-// them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at.
+// not depend on the size of the scene. A white diffuse surface that faces the key alone has a value of 0.8. Where none
+// of them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -50,7 +50,7 @@ double distance_to(const std::array<Imath::V3d, 3>& corners, const Imath::V3d& a
   return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : none;
 }
 
-/// Whether a surface of a mesh's primitive lets no light through.
+/// What a primitive's material says of light that comes to it: does it let none through, and does it have back faces?
 struct Wall {
   bool is_opaque = true, is_double_sided = false;
 };
@@ -71,8 +71,8 @@ Wall wall_of(const LookDocument& document, const std::string& node, const Mesh& 
   return {is_opaque, material.at("doubleSided").get<bool>()};
 }
 
-/// A way from the eye, and whether light comes along it (what is single-sided then stops it where its front faces the
-/// light) or a ray of the camera goes along it.
+/// A direction from the eye, in which a ray of the camera goes, or from which light comes: a single-sided surface stops
+/// either one where its front faces where it came from.
 struct Way {
   Imath::V3d along;
   bool is_of_light;
@@ -98,7 +98,8 @@ std::vector<Obstacle> obstacles(const LookDocument& document, const WidePoint& e
   return nearest;
 }
 
-/// A light of the look document and its node, both called `wanted` or nearly so. `node`: its transform.
+/// Adds a light and its node to the look document, both called `wanted` or, if that is taken, `wanted_2` and so on.
+/// `node`: its transform.
 void add_light(LookDocument& document, const char* wanted, Json light, Json node) {
   const std::string name = unique_name(wanted, [&](const std::string& candidate) {
     return document.look["lights"].contains(candidate) || document.look["nodes"].contains(candidate);

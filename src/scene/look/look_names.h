@@ -1,4 +1,5 @@
-// Names for the entities of a look document: unique, printable, and put where glTF has indices.
+// Names for the entities of a look document: unique, and put where glTF has indices. Used when a document is made
+// (look.cpp), by --lights auto and by edits that add entities.
 #pragma once
 #include <functional>
 #include <optional>
@@ -37,11 +38,11 @@ class UniqueNames {
 /// The section called `name`, if there is one.
 [[nodiscard]] std::optional<Section> section_of(std::string_view name);
 
-/// The name that a JSON pointer's token means in a section: itself if it exists or is no glTF index (which
-/// has no leading zeros).
+/// The name that a token of a JSON pointer means in a section: itself if there is such an entity or the token is no
+/// glTF index of the scene file (which has no leading zeros), else the name of the entity with that index.
 [[nodiscard]] std::string resolve_token(const LookDocument& document, Section section, const std::string& token);
 
-/// Puts names where `value` has glTF indices (of the scene file); unknown indices stay.
+/// Puts names where an entity `value` of a section has indices of the scene file; unknown indices stay.
 void name_indices(const LookDocument& document, Section section, Json& value);
 
 }  // namespace relook

@@ -1,5 +1,5 @@
-// The walks over look_schema.h's tables: cut, fill, visit names, check. Their depth is that of the tables, never that
-// of the data.
+// The walks over look_schema.h's tables, along a value: cut, fill, visit names, check. Their depth is that of the
+// tables, never that of the data.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -62,7 +62,7 @@ std::vector<std::string> variant_names(const LookDocument& document) {
   return names;
 }
 
-/// One check of one value with its place.
+/// One check of one value; throws LookError at its place.
 class Checker {
  public:
   Checker(const LookDocument& document, std::string_view file) : document_(document), file_(file) {}
@@ -187,7 +187,7 @@ class Checker {
     throw error;
   }
 
-  /// Of a primitive that maps many variants, every one is looked up: the document's names are put in order once.
+  /// A primitive may map many variants, each of which is looked up: so the document's names are sorted once.
   [[nodiscard]] bool is_variant(const std::string& word) const {
     if (!variants_) {
       variants_ = variant_names(document_);

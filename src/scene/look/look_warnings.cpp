@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostOfAKind = 20;
 
-/// Sentences of one kind; beyond a few only their number.
+/// Collects sentences of one kind; beyond kMostOfAKind it only counts them.
 class Kind {
  public:
   explicit Kind(std::vector<std::string>& warnings) : warnings_(warnings) {}
@@ -31,7 +31,7 @@ class Kind {
   std::size_t count_ = 0;
 };
 
-/// Without small scales, matrices and instances nothing is flattened: as a rule there is no need to look further.
+/// False for a node that flattens nothing, by a look at the node alone: it has no small scale, no matrix, no instances.
 bool may_flatten(const Json& node) {
   constexpr double kSmall = 1e-3;
   if (node.contains("matrix") || node.contains("extras")) return true;
@@ -41,7 +41,7 @@ bool may_flatten(const Json& node) {
          });
 }
 
-/// Of the mesh of a node, which a skin places wherever the node is; "" if nothing.
+/// What of a node's mesh is flattened to nothing, in words; "" if nothing is, or if a skin places it.
 std::string what_is_lost(const LookDocument& document, const Json& node, const WideTransform& world) {
   if (!node.contains("mesh") || node.contains("skin")) return "";
   const Json* instances = member_at(node, {"extras", "relook", "instances"});
@@ -71,14 +71,14 @@ void warn_of_places(const LookDocument& document, std::vector<std::string>& warn
   });
 }
 
-/// The textures that slots below a value name.
+/// Visits the names of textures below a value.
 void visit_textures(const Schema& schema, const Json& value, const std::function<void(const std::string&)>& visit) {
   visit_names(schema, value, [&](Target target, const Json& name) {
     if (target == Target::textures && name.is_string()) visit(name.get_ref<const std::string&>());
   });
 }
 
-/// Of everything that a node shows, also in a variant.
+/// The names of all materials that some node shows, also in a variant.
 std::set<std::string> shown_materials(const LookDocument& document) {
   std::set<std::string> shown;
   for (const Json& node : document.look.at("nodes")) {

@@ -1,4 +1,5 @@
-// What of a scene cannot be seen though its file names it, said in words.
+// What of a scene cannot be seen though its file names it, in words, for the console of the command that opens the
+// scene (cli/input/load_scene.cpp).
 #pragma once
 #include <string>
 #include <vector>
@@ -7,8 +8,8 @@
 
 namespace relook {
 
-/// Nodes that are scaled to nothing, lights without a direction, textures without an image: one sentence each, with what
-/// it means for the picture. Requires: check_values() passed.
+/// Nodes that are scaled to nothing, lights without a direction, textures without an image: one sentence each, with
+/// what it means for the picture. Requires: check_values() passed.
 [[nodiscard]] std::vector<std::string> look_warnings(const LookDocument& document);
 
 }  // namespace relook

@@ -14,7 +14,7 @@ namespace relook {
 namespace {
 
 constexpr std::size_t kLongestName = 255;     // with the flag for long names; 31 without
-constexpr std::size_t kChannelBytes = 16;     // of a channel, behind its name
+constexpr std::size_t kChannelBytes = 16;     // what an entry of a channel list has behind the name
 constexpr std::uint32_t kMultiPart = 0x1000;  // a flag of the version field
 
 /// Reads forward; none beyond the end.
@@ -23,7 +23,7 @@ class Cursor {
   explicit Cursor(BytesView bytes) : bytes_(bytes) {}
   [[nodiscard]] std::size_t offset() const { return at_; }
   [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
-  /// Of at most kLongestName bytes, without the zero behind it.
+  /// A name of at most kLongestName bytes, without the zero behind it.
   std::optional<std::string_view> name() {
     const std::string_view rest = text_of(bytes_.subspan(at_)).substr(0, kLongestName + 1);
     const std::size_t end = rest.find('\0');
@@ -73,7 +73,7 @@ bool are_whole_channels(BytesView value) {
   return false;
 }
 
-/// Types that the library reads as so many bytes, whatever size the attribute says.
+/// Types of which the library reads a fixed number of bytes, whatever size the attribute says.
 constexpr std::array<std::pair<std::string_view, std::size_t>, 24> kFixedBytes{{{"box2f", 16},
                                                                                 {"box2i", 16},
                                                                                 {"chromaticities", 32},
@@ -99,7 +99,8 @@ constexpr std::array<std::pair<std::string_view, std::size_t>, 24> kFixedBytes{{
                                                                                 {"v3f", 12},
                                                                                 {"v3i", 12}}};
 
-/// Does a value take the bytes that its attribute says? Otherwise the library takes the next attribute for elsewhere.
+/// Does a value take the bytes that its attribute says? Otherwise the library looks for the next attribute in a wrong
+/// place.
 bool is_whole(std::string_view type, BytesView value) {
   if (type == "preview") return is_whole_preview(value);
   if (type == "stringvector") return are_whole_strings(value);
@@ -110,11 +111,11 @@ bool is_whole(std::string_view type, BytesView value) {
   return fixed == kFixedBytes.end() || fixed->second == value.size();
 }
 
-/// What of a part's header says how much of it is unpacked at once.
+/// What a part's header says of how much of it is unpacked at once.
 struct Part {
   std::uint64_t pixel_bytes = 0, width = 0, height = 0, tile_texels = 0;
 
-  /// `value`: whole.
+  /// Notes an attribute. Requires: is_whole(type, value).
   void take(std::string_view type, std::string_view name, BytesView value) {
     Cursor cursor(value);
     if (type == "chlist") add_channels(cursor);
@@ -143,7 +144,7 @@ struct Part {
   }
 };
 
-/// The attributes of one part, to the empty name behind them. An error's text, or "".
+/// Reads the attributes of one part, up to the empty name behind them. Returns what is wrong, or "".
 std::string read_part(Cursor& cursor, Part& part) {
   while (true) {
     const std::size_t place = cursor.offset();
@@ -171,7 +172,7 @@ ExrHeader read_exr_header(BytesView exr) {
     Part part;
     header.fault = read_part(cursor, part);
     header.block_bytes = std::max(header.block_bytes, part.block_bytes());
-    const bool is_end = cursor.offset() == start + 1;  // an empty header ends those of parts
+    const bool is_end = cursor.offset() == start + 1;  // an empty header ends the list of headers
     if ((*version & kMultiPart) == 0 || (is_end && !is_first)) break;
   }
   return header;

@@ -13,9 +13,9 @@
 namespace relook {
 namespace {
 
-/// Of rows that are decoded at once, in the format of the pyramid.
+/// Bytes of the rows that are decoded at once, in the format of the pyramid.
 constexpr std::size_t kRowBytes = std::size_t{4} << 20;
-/// What a decoder may hold beside the result without being counted.
+/// Bytes that a decoder may hold beside the result without being counted.
 constexpr std::uint64_t kFewBytes = std::uint64_t{64} << 20;
 /// Bound of an HDR texel: sums of many stay finite.
 constexpr float kLargestTexel = 1e9F;
@@ -31,9 +31,10 @@ std::string format_name(BytesView encoded) {
   return "";
 }
 
-/// More pixels than this cannot be in one byte of a format: deflate shrinks 1032 to 1 at most, and a PNG byte may hold
-/// eight pixels; Radiance runs hold 127 of a channel in two bytes; a JPEG needs a bit for each block of 64. A WebP image
-/// of one colour needs no bits for its pixels: it may be as large as textures are, larger ones need as much as a PNG.
+/// The most pixels that so many bytes of a format can hold: deflate shrinks 1032 to 1 at most, and a PNG byte may hold
+/// eight pixels; Radiance runs hold 127 values of a channel in two bytes; a JPEG needs a bit for each block of 64
+/// pixels. A WebP image of one colour needs no bits for its pixels: 2^24 are always allowed, more need as many bytes as
+/// in a PNG.
 std::uint64_t most_pixels(std::string_view format, std::uint64_t bytes) {
   constexpr std::uint64_t kAlwaysFine = std::uint64_t{1} << 24;
   if (format == "webp") return bounded_sum(kAlwaysFine, bounded_product(bytes, 8256));
@@ -72,7 +73,8 @@ class OpenImage {
   }
   [[nodiscard]] bool is_16_bit() const { return spec_.type == TexelType::word; }
 
-  /// The memory of the pyramid, and what the decoder needs beside it. Throws ResourceError.
+  /// A share of the import memory for the pyramid, once there is room for what the decoder needs beside it. Throws
+  /// ResourceError.
   [[nodiscard]] ImportShare share() const {
     const std::string what =
         place() + "the image of " + std::to_string(spec_.width) + "x" + std::to_string(spec_.height) + " pixels";
@@ -81,8 +83,8 @@ class OpenImage {
     return share;
   }
 
-  /// RGBA texels as numbers of the pyramid, with room for its smaller levels; once only. Grey is spread over RGB,
-  /// missing alpha `opaque`. `convert`: appends a few rows of `Stored` texels to the numbers.
+  /// Decodes the image, a few rows at a time, to RGBA texels with room for the pyramid's smaller levels. Grey is spread
+  /// over RGB, missing alpha is `opaque`. `convert` appends rows of `Stored` texels to the numbers. To be called once.
   template <class Stored, class Number, class Convert>
   [[nodiscard]] std::vector<Number> texels(TexelType type, Stored opaque, const Convert& convert) {
     std::vector<Number> values;
@@ -97,7 +99,7 @@ class OpenImage {
       read_rows(static_cast<int>(y), static_cast<int>(end), type, opaque, rows);
       convert(rows, values);
     }
-    // Before any loop in parallel, which may decode another image on this thread.
+    // Given back before any parallel loop, which may decode another image on this thread.
     image_.reset();
     turn_ = {};
     return values;
@@ -121,10 +123,10 @@ class OpenImage {
     }
   }
   [[nodiscard]] std::uint64_t texel_bytes() const { return spec_.type == TexelType::byte ? 4 : 16; }
-  /// Of the rows that are decoded at once, with all channels that the file has; 0: few. OpenEXR unpacks up to 256.
+  /// Bytes of the rows that are decoded at once, with all channels that the file has; 0 if no more than kFewBytes.
   [[nodiscard]] std::uint64_t block_bytes() const {
-    constexpr int kBlockRows = 256;
-    constexpr std::uint64_t kCopies = 8;  // numbers of a texel, on their way
+    constexpr int kBlockRows = 256;       // the most that OpenEXR packs together
+    constexpr std::uint64_t kCopies = 8;  // numbers a texel in the buffers of the rows
     const int rows = std::min(std::max(format_ == "openexr" ? kBlockRows : 1, spec_.tile_height), spec_.height);
     const std::uint64_t texel = (static_cast<std::uint64_t>(spec_.channels) + kCopies) * sizeof(float);
     const std::uint64_t block =
@@ -149,13 +151,13 @@ class OpenImage {
     reduced_ = std::move(stream.bytes);
     return reduced_;
   }
-  /// libwebp decodes an image as a whole: its pixels, their copy that is read in rows, and its planes.
+  /// Counts what libwebp holds, which decodes an image as a whole: its pixels, our copy of them, and its planes.
   void hold_whole() {
     constexpr std::uint64_t kPixelBytes = 12;
     const std::uint64_t bytes = std::uint64_t{header().width} * header().height * kPixelBytes;
     if (bytes > kFewBytes) hold(bytes);
   }
-  /// One such image at a time: what their decoders hold is counted once.
+  /// Waits until no other image is decoded whose decoder holds much, so that the memory need not be there twice.
   void hold(std::uint64_t bytes) {
     static std::mutex turn;
     turn_ = std::unique_lock(turn);
@@ -180,7 +182,7 @@ class OpenImage {
   ImageSpec spec_;
 };
 
-/// Linear values of 16-bit ones; `color`: sRGB-encoded.
+/// [65536]: the linear values of 16-bit ones. `color`: these are sRGB-encoded.
 std::vector<float> linear_of_16_bit(bool color) {
   std::vector<float> table(65536);
   for (std::size_t i = 0; i < table.size(); ++i) {

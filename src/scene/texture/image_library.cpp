@@ -10,7 +10,8 @@
 namespace relook {
 namespace {
 
-/// Libraries behind the module end the program when memory runs out while they are loaded: ask first.
+/// Throws when there is not enough address space for the module: the libraries behind it end the program when memory
+/// runs out while they are loaded.
 void require_address_space() {
   constexpr std::size_t kModuleBytes = std::size_t{512}
                                        << 20;  // address space of OpenImageIO and 240 libraries behind it

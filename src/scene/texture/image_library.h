@@ -1,5 +1,5 @@
-// The image library at arm's length: OpenImageIO takes 0.35 s and 134 MB to load, so it stands in a module of its own
-// that is loaded when the first image is decoded. A replay from a cache decodes none.
+// The image library behind an interface: OpenImageIO takes 0.35 s and 134 MB to load, so it stands in a module of its
+// own (oiio/) that is loaded when the first image is decoded, by image.cpp alone. A replay from a cache decodes none.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -31,8 +31,7 @@ class ImageReader {
 };
 
 /// What the module exports, as relook_open_image: opens an image of the named format ("png", "jpeg", "hdr", "openexr",
-/// "webp").
-/// `bytes` outlives it. Null: `error` says why.
+/// "webp"). `bytes` outlives the reader. Null: `error` says why.
 using OpenImageReader = std::unique_ptr<ImageReader>(const char* format, std::span<const std::byte> bytes,
                                                      std::string& error);
 
@@ -40,8 +39,8 @@ using OpenImageReader = std::unique_ptr<ImageReader>(const char* format, std::sp
 /// memory is short such threads would end the program. To be called before any thread starts.
 void limit_image_library_threads();
 
-/// Loads the module on first use: from the program's folder or, installed, ../lib/relook. Throws Error if it is
-/// missing.
+/// As OpenImageReader. Loads the module on first use: from the program's folder or, installed, ../lib/relook. Throws
+/// Error if it is missing.
 [[nodiscard]] std::unique_ptr<ImageReader> open_image(const char* format, std::span<const std::byte> bytes,
                                                       std::string& error);
 

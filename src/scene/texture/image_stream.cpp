@@ -46,7 +46,7 @@ bool is_png_header(BytesView data) {
          byte(11) == 0 && byte(12) <= 1;
 }
 
-/// `header`: valid.
+/// ImageStream::held_bytes of a PNG with this header. Requires: is_png_header(header).
 std::uint64_t held_of_png(BytesView header) {
   constexpr std::array<std::uint64_t, 7> kChannels{1, 0, 3, 4, 2, 0, 4};  // by colour type; a palette may have alpha
   const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(header[i]); };

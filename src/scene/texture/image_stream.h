@@ -1,6 +1,7 @@
 // The framing of encoded images, checked before a decoder sees them, and reduced to what makes pixels: decoders unpack
 // colour profiles, Exif, IPTC and texts that nobody reads (a bad IPTC block crashes OpenImageIO 2.4), print to stderr
-// about damaged PNG files, and fill the missing end of a JPEG with grey.
+// about damaged PNG files, and fill the missing end of a JPEG with grey. Bytes in, bytes out. Called by image.cpp; the
+// importer and the compiler ask for formats that are refused.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -18,11 +19,11 @@ struct ImageStream {
   std::uint64_t held_bytes = 0;
 };
 
-/// Keeps IHDR, PLTE, tRNS, IDAT and IEND. Every chunk must be whole and have the right CRC.
+/// The PNG with its chunks IHDR, PLTE, tRNS, IDAT and IEND alone. Every chunk must be whole and have the right CRC.
 [[nodiscard]] ImageStream png_pixels(BytesView png);
 
-/// Drops application segments (but JFIF's and Adobe's, which say how colours are coded) and comments. Every segment
-/// must be whole, and an EOI marker must end the image; more than 100 scans are too many.
+/// The JPEG without application segments (but JFIF's and Adobe's, which say how colours are coded) and comments. Every
+/// segment must be whole, and an EOI marker must end the image; more than 100 scans are too many.
 [[nodiscard]] ImageStream jpeg_pixels(BytesView jpeg);
 
 [[nodiscard]] bool is_webp(BytesView bytes);

@@ -54,8 +54,8 @@ namespace {
 
 constexpr float kLargest = 0x1p22F;
 
-/// Beyond kLargest the lattice has no fractions left: octaves stand still there. Apart from add_octave, where it would
-/// keep the compiler from vectorising.
+/// Clamps coordinates to kLargest, where floats are half a cycle apart: finer octaves stand still there. A loop of its
+/// own, since in add_octave() it would keep the compiler from vectorising.
 void bound(std::vector<float>& coordinates) {
   for (float& x : coordinates) {
     x = x > -kLargest ? x : -kLargest;
@@ -75,7 +75,7 @@ void add_octave(std::size_t lanes, float strength, float* __restrict x, float* _
   }
 }
 
-/// Positions in cycles, kept where the lattice still has fractions: anything else reads the origin.
+/// Positions in cycles. Those beyond kLargest, and those that are not finite, read the origin.
 struct Positions {
   std::vector<float> x, y, z;
 

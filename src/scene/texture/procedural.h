@@ -1,5 +1,6 @@
 // Procedural solid textures (paper 2.1, 4.1.1): marble, wood, checker and noise as pure functions of a position and a
-// few parameters. The result always lies between color1 and color2, so parameters bound what a texture can reach.
+// few parameters. The result always lies between color1 and color2, so parameters bound what a texture can reach. Read
+// by colour programs (color/expression/lanes.cpp), tracing (trace/surface.cpp: alpha) and displacement.
 #pragma once
 #include <span>
 

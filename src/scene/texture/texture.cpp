@@ -82,7 +82,7 @@ Rgba bilinear(const Texels& texels, const TexturePyramid::Level& level, Uv uv, c
   return top * (1.0F - v) + bottom * v;
 }
 
-/// Beyond this a texel coordinate has no fraction left: such lookups read the corner.
+/// From here on a texel coordinate has hardly a fraction left: such lookups read uv (0, 0).
 constexpr float kLargestUv = 1e6F;
 
 /// More than any pyramid has.

@@ -1,5 +1,6 @@
-// Mip pyramids and our own sampler (a library call costs as much as several rays). Texture values are pure
-// functions of (uv, level): the same bits on every machine.
+// Mip pyramids and our own sampler (a library call costs as much as several rays). Texture values are pure functions of
+// uv and level: the same bits on every machine. build_pyramid() is called by image.cpp, sample() wherever a texture is
+// read: shading, alpha, displacement.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -31,7 +32,7 @@ struct TexturePyramid {
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
 
-/// Which texels of a level a lookup takes: the nearest one, or the four around it, mixed.
+/// Which texels of a level a lookup takes: the nearest one, or the four around the place, mixed.
 enum class TexelFilter : std::uint8_t { nearest, linear };
 /// Which levels a minified lookup takes: the full image alone, the level nearest to the footprint, or two, mixed.
 enum class LevelFilter : std::uint8_t { full, nearest, linear };

@@ -7,7 +7,7 @@
 namespace relook {
 namespace {
 
-/// Coordinates in [0, 1] over the mesh's bounds, axis `axis` last.
+/// Coordinates over the mesh's bounds, in [0, 1] within them; the axis `axis` comes last.
 Point bounds_coordinates(const Mesh& mesh, const Point& local, int axis) {
   const Point size = mesh.bounds.size();
   Point unit;

@@ -1,5 +1,6 @@
-// Where a texture slot is read: uv of the mesh, or coordinates projected from the object-space position when it has
-// none (extras.relook.mapping). Portable arithmetic only.
+// Where a texture slot is read: at a uv of the mesh, or at coordinates projected from the object-space position, if the
+// slot says so (extras.relook.mapping) or the mesh has no uv for it. Portable arithmetic only. Called by
+// trace/surface.cpp and displacement.
 #pragma once
 #include "scene/material.h"
 #include "scene/mesh.h"

@@ -12,7 +12,7 @@
 
 namespace {
 
-/// OpenImageIO 2.4's own reader takes a place beyond the end, which a file can ask for, for one before it.
+/// A file in memory. OpenImageIO 2.4's own reads outside of the memory when a file asks for a place beyond its end.
 class Memory final : public OIIO::Filesystem::IOMemReader {
  public:
   using IOMemReader::IOMemReader;

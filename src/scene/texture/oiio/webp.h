@@ -1,4 +1,5 @@
-// WebP images through libwebp: OpenImageIO 2.4 gives their colours multiplied by alpha, whatever it is asked for.
+// WebP images through libwebp, for module.cpp: OpenImageIO 2.4 gives their colours multiplied by alpha, whatever it is
+// asked for.
 #pragma once
 #include "scene/texture/image_library.h"
 
