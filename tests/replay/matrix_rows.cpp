@@ -9,9 +9,9 @@
 namespace relook {
 
 void expect_full_renders(SceneState state, const ViewOptions& view, const std::vector<MatrixRow>& rows,
-                         std::optional<ChangeClass> is_of_class) {
+                         std::optional<ChangeClass> is_of_class, const RegionOptions& regions) {
   Image image = preprocessed(state.scene(), view);
-  Replayer replayer(std::move(state), std::move(image));
+  Replayer replayer(std::move(state), std::move(image), regions);
   std::size_t rows_that_changed = 0;
   for (const MatrixRow& row : rows) {
     SCOPED_TRACE(row.name);

@@ -13,26 +13,26 @@ namespace relook {
 
 /// Operations of one edit.
 struct MatrixRow {
-  const char* name;
+  std::string name;
   Json operations;
 };
 
-[[nodiscard]] inline Json set(const char* pointer, Json value) {
+[[nodiscard]] inline Json set(const std::string& pointer, Json value) {
   return {{"op", "replace"}, {"path", pointer}, {"value", std::move(value)}};
 }
-[[nodiscard]] inline Json add(const char* pointer, Json value) {
+[[nodiscard]] inline Json add(const std::string& pointer, Json value) {
   return {{"op", "add"}, {"path", pointer}, {"value", std::move(value)}};
 }
-[[nodiscard]] inline Json removed(const char* pointer) { return {{"op", "remove"}, {"path", pointer}}; }
+[[nodiscard]] inline Json removed(const std::string& pointer) { return {{"op", "remove"}, {"path", pointer}}; }
 template <class... Operations>
-[[nodiscard]] MatrixRow row(const char* name, Operations... operations) {
-  return {name, Json::array({std::move(operations)...})};
+[[nodiscard]] MatrixRow row(std::string name, Operations... operations) {
+  return {std::move(name), Json::array({std::move(operations)...})};
 }
 
 /// Steps through rows. `is_of_class`: what the class of a row must be, if anything. Frames, ray trees, tiles and counters
 /// that are not those of a full render are gtest failures.
 void expect_full_renders(SceneState state, const ViewOptions& view, const std::vector<MatrixRow>& rows,
-                         std::optional<ChangeClass> is_of_class);
+                         std::optional<ChangeClass> is_of_class, const RegionOptions& regions = {});
 /// The frame has the bits of a full render, and the ray trees are those of a fresh preprocess.
 void expect_fresh_image(const Replayer& replayer);
 
