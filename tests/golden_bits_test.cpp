@@ -15,8 +15,6 @@
 #include "edit/journal_walk.h"
 #include "replay/replay.h"
 #include "run_program.h"
-#include "scene/camera.h"
-#include "scene/gltf/import.h"
 #include "test_scenes.h"
 
 namespace relook {
@@ -83,12 +81,6 @@ void take_bits(const std::string& name, SceneState state, ViewOptions view, cons
         break;
     }
   }
-}
-
-SceneState scene_of_file(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height) {
-  LookDocument document = make_look_document(import_gltf(file));
-  const Camera camera = choose_camera(document, "", width, height);
-  return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
 }
 
 constexpr ViewOptions kViews[] = {{1, 6, 0}, {4, 6, 2}};

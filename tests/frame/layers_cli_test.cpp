@@ -80,7 +80,7 @@ TEST_F(LayersCli, without_the_flag_there_are_no_layers) {
 }
 
 TEST_F(LayersCli, exrheader_lists_the_layers) {
-  if (!has("exrheader")) GTEST_SKIP();
+  if (!has("exrheader")) GTEST_SKIP() << "no exrheader here; install openexr";
   make_frame();
   const ProgramResult result = run_program({"exrheader", at("f.exr")});
   EXPECT_EQ(result.exit_code, 0) << result.output;
@@ -91,7 +91,7 @@ TEST_F(LayersCli, exrheader_lists_the_layers) {
 }
 
 TEST_F(LayersCli, oiiotool_adds_the_layers_up_to_the_frame) {
-  if (!has("oiiotool") || !has("idiff")) GTEST_SKIP();
+  if (!has("oiiotool") || !has("idiff")) GTEST_SKIP() << "no oiiotool and idiff here; install openimageio-tools";
   make_frame();
   const LayerFile file = read_layers(at("f.exr"));
   for (const std::string sum : {"relook:lights", "relook:paths"}) {

@@ -17,6 +17,8 @@ namespace relook {
 
 using Vec = Imath::V3d;  // also a colour: Imath multiplies componentwise
 
+[[nodiscard]] inline Vec color_of(Color c) { return {c.x, c.y, c.z}; }
+
 /// A triangle of a living object in world space.
 struct WorldTriangle {
   Vec a, b, c;

@@ -66,11 +66,16 @@ class Browser:
         self._call("POST", f"{self.session}/url", {"url": url})
         return time.monotonic() - start
 
+    def before_pages(self, script):
+        """From now on runs in each page before the page's own scripts do."""
+        self._call("POST", f"{self.session}/goog/cdp/execute",
+                   {"cmd": "Page.addScriptToEvaluateOnNewDocument", "params": {"source": script}})
+
     def run(self, script, *arguments):
         return self._call("POST", f"{self.session}/execute/sync", {"script": script, "args": list(arguments)})
 
-    def wait(self, script, *arguments, seconds=20):
-        """Until the script returns something true, which is returned."""
+    def wait(self, script, *arguments, seconds=100):
+        """Until the script returns something true, which is returned; a page that never does is a fault of its own."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             if result := self.run(script, *arguments):

@@ -3,37 +3,14 @@
 // finds.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <optional>
 
-#include "image/render.h"
-#include "random_changes.h"
-#include "region_checks.h"
-#include "replay/replay.h"
-#include "run_program.h"
-#include "test_scenes.h"
-#include "tree_reader.h"
-#include "tunnel_caches.h"
+#include "matrix_rows.h"
 
 namespace relook {
 namespace {
 
-struct Row {
-  const char* name;
-  Json operations;
-};
-
-Json set(const char* pointer, Json value) {
-  return {{"op", "replace"}, {"path", pointer}, {"value", std::move(value)}};
-}
-Json add(const char* pointer, Json value) { return {{"op", "add"}, {"path", pointer}, {"value", std::move(value)}}; }
-Json removed(const char* pointer) { return {{"op", "remove"}, {"path", pointer}}; }
-template <class... Operations>
-Row row(const char* name, Operations... operations) {
-  return {name, Json::array({std::move(operations)...})};
-}
-
-std::vector<Row> color_rows() {
+std::vector<MatrixRow> color_rows() {
   return {
       row("surface color", set("/materials/Matte/pbrMetallicRoughness/baseColorFactor", {0.2, 0.7, 0.3, 1})),
       row("one component of a color", set("/materials/Ground/pbrMetallicRoughness/baseColorFactor/0", 0.25)),
@@ -126,7 +103,7 @@ std::vector<Row> color_rows() {
   };
 }
 
-std::vector<Row> optical_rows() {
+std::vector<MatrixRow> optical_rows() {
   return {
       row("add a reflection", set("/materials/Matte/pbrMetallicRoughness/roughnessFactor", 0.05)),
       row("delete a reflection", set("/materials/Mirror/pbrMetallicRoughness/roughnessFactor", 0.9)),
@@ -172,7 +149,7 @@ std::vector<Row> optical_rows() {
   };
 }
 
-std::vector<Row> geometric_rows() {
+std::vector<MatrixRow> geometric_rows() {
   const Json lamp = {{"translation", {-2, 3, 2}}, {"extensions", {{"KHR_lights_punctual", {{"light", "Lamp"}}}}}};
   return {
       row("transform an object", set("/nodes/Ball/translation", {0.4, 0.8, 0.2})),
@@ -259,37 +236,6 @@ std::string case_name(const testing::TestParamInfo<MatrixCase>& info) {
          (info.param.shadow_bits == 0 ? "" : "_shadow_bits_" + std::to_string(info.param.shadow_bits));
 }
 
-/// Steps through rows, each against a full render. `is_of_class`: what the class of a row must be, if anything.
-void expect_full_renders(SceneState state, const ViewOptions& view, const std::vector<Row>& rows,
-                         std::optional<ChangeClass> is_of_class) {
-  Image image = preprocessed(state.scene(), view);
-  Replayer replayer(std::move(state), std::move(image));
-  std::size_t rows_that_changed = 0;
-  for (const Row& row : rows) {
-    SCOPED_TRACE(row.name);
-    const Frame before = replayer.image().frame;
-    const std::uint64_t segments = replayer.segments();
-    const StepResult step = replayer.step(edit_of(row.operations), "matrix", ".");
-    const SceneState again = compiled_again(replayer.state());
-    const Frame full = rendered(again.scene(), view);
-    const Image fresh = preprocessed(again.scene(), view);
-    EXPECT_EQ(different_pixels(replayer.image().frame, full).size(), 0U);
-    EXPECT_EQ(different_pixels(fresh.frame, full).size(), 0U);
-    EXPECT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
-    EXPECT_EQ(stale_tiles(replayer), 0U);
-    EXPECT_EQ(step.changed_pixels.indices(full.width), different_pixels(before, full));
-    EXPECT_EQ(step.counters.pixels_changed, step.changed_pixels.size());
-    EXPECT_LE(step.counters.pixels_changed, step.counters.samples_affected);
-    EXPECT_EQ(step.counters.ray_tests + step.counters.ray_tests_culled, segments);
-    if (is_of_class) {
-      EXPECT_EQ(step.classification.change, *is_of_class);
-    }
-    rows_that_changed += step.changed_pixels.empty() ? 0 : 1;
-  }
-  // Not every row bears on every scene, but a table that changes nothing would prove nothing.
-  EXPECT_GT(rows_that_changed, rows.size() / 2);
-}
-
 TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
   const auto [which, samples, kind, shadow_bits] = GetParam();
   const auto rows = kind == ChangeClass::color     ? color_rows()
@@ -299,85 +245,6 @@ TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
   const bool is_of_color = kind == ChangeClass::color && which != TestScene::study;
   expect_full_renders(test_scene(which, 64 / samples + 24, 48 / samples + 18), {samples, 6, shadow_bits}, rows,
                       is_of_color ? std::optional(ChangeClass::color) : std::nullopt);
-}
-
-/// Morph weights and joints bend what is seen directly, in a mirror, through glass and in shadows.
-std::vector<Row> deforming_rows() {
-  const Json identity = Json::array({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0.3, 0, 1});
-  return {
-      row("a morph weight", set("/nodes/MirrorBall/weights/0", 0.8)),
-      row("all weights", set("/nodes/GlassBall/weights", {0.3, -0.5})),
-      row("weight of a skinned mesh", set("/nodes/Ball/weights/1", 0.7)),
-      row("weight of a displaced mesh", set("/nodes/Post/weights/0", 0.5)),
-      row("no weights: those of the mesh", removed("/nodes/MirrorBall/weights")),
-      row("weights of the mesh", set("/meshes/MirrorBall/weights/1", 0.4)),
-      row("turn a joint", set("/nodes/Chest/rotation", {0, 0, 0.38268343, 0.92387953})),
-      row("move the root of the joints", set("/nodes/Hip/translation", {0.3, 0.4, -0.2})),
-      row("what holds the joints", set("/nodes/Rig/rotation", {0, 0.5, 0, 0.8660254})),
-      row("mirror a joint", set("/nodes/Chest/scale", {-1, 1, 1})),
-      row("flatten a joint", set("/nodes/Chest/scale", {1, 0, 1})),
-      row("a joint and a weight at once", set("/nodes/Chest/scale", {1.2, 0.8, 1}), set("/nodes/Ball/weights/0", 0.6)),
-      row("a second puppet", add("/nodes/Twin", {{"mesh", "Ball"}, {"skin", "Puppet"}, {"weights", {0, -0.4}}})),
-      row("without its skin", removed("/nodes/Twin/skin"), set("/nodes/Twin/translation", {1.4, 0.6, -0.9})),
-      row("with it again", add("/nodes/Twin/skin", "Puppet")),
-      row("another joint name", Json{{"op", "move"}, {"from", "/nodes/Chest"}, {"path", "/nodes/Thorax"}}),
-      row("turn it by that name", set("/nodes/Thorax/rotation", {0, 0, -0.258819, 0.9659258})),
-      row("hang a joint elsewhere", set("/nodes/Hip/children", Json::array()), add("/nodes/Rig/children/-", "Thorax")),
-      row("a joint's matrix", set("/nodes/Thorax", {{"matrix", identity}})),
-      row("hide the mesh", set("/nodes/Ball/extensions/KHR_node_visibility/visible", false)),
-      row("move joints of a hidden mesh", set("/nodes/Hip/translation", {-0.2, 0.5, -0.3})),
-      row("show it", set("/nodes/Ball/extensions/KHR_node_visibility/visible", true)),
-      row("another mesh", set("/nodes/Ball/mesh", "MirrorBall")),
-      row("a transform that counts for nothing", set("/nodes/Twin/translation", {0, 9, 0})),
-  };
-}
-
-TEST(DeformingEdits, ReplayedFramesAndTreesAreThoseOfAFullRender) {
-  for (const ViewOptions& view : {ViewOptions{1, 6, 0}, ViewOptions{1, 5, 2}, ViewOptions{4, 4, 0}}) {
-    SCOPED_TRACE(std::to_string(view.samples) + " samples, " + std::to_string(view.shadow_bits) + " shadow bits");
-    const std::uint32_t size = view.samples == 1 ? 1 : 2;
-    expect_full_renders(puppet_scene(88 / size, 66 / size), view, deforming_rows(), std::nullopt);
-  }
-}
-
-/// The paper's drag: the selection is out of the ray trees until it is released.
-TEST(DeformingEdits, ADraggedSkeletonLeavesTheFramesOfFullRenders) {
-  const ViewOptions view{1, 5, 0};
-  SceneState state = puppet_scene(88, 66);
-  Image image = preprocessed(state.scene(), view);
-  Replayer replayer(std::move(state), std::move(image));
-  for (int i = 1; i <= 5; ++i) {
-    const double angle = 0.2 * i;
-    replayer.drag(edit_of(Json::array({set("/nodes/Chest/rotation", {0, 0, std::sin(angle), std::cos(angle)}),
-                                       set("/nodes/MirrorBall/weights/0", 0.15 * i)})),
-                  "drag", ".");
-    const SceneState again = compiled_again(replayer.state());
-    EXPECT_EQ(different_pixels(replayer.image().frame, rendered(again.scene(), view)).size(), 0U) << i;
-  }
-  replayer.release();
-  const SceneState again = compiled_again(replayer.state());
-  const Image fresh = preprocessed(again.scene(), view);
-  EXPECT_EQ(different_pixels(replayer.image().frame, fresh.frame).size(), 0U);
-  EXPECT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
-}
-
-TEST(DeformingEdits, RandomWeightsAndJointsGiveTheFramesOfFullRenders) {
-  const std::uint64_t seed = seed_of_run();
-  SCOPED_TRACE("RELOOK_SEED=" + std::to_string(seed));
-  Dice dice(seed);
-  const ViewOptions view{1, 5, 1};
-  SceneState state = puppet_scene(60, 45);
-  Image image = preprocessed(state.scene(), view);
-  Replayer replayer(std::move(state), std::move(image));
-  for (int i = 0; i < 25; ++i) {
-    const Json random = random_deformation(dice);
-    SCOPED_TRACE(random.dump());
-    replayer.step(edit_of(random), "random", ".");
-    const SceneState again = compiled_again(replayer.state());
-    const Image fresh = preprocessed(again.scene(), view);
-    ASSERT_EQ(different_pixels(replayer.image().frame, fresh.frame).size(), 0U);
-    ASSERT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
-  }
 }
 
 std::vector<MatrixCase> all_cases() {
@@ -397,58 +264,6 @@ std::vector<MatrixCase> all_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table1, EditMatrix, testing::ValuesIn(all_cases()), case_name);
-
-/// Groups, tunnels, atoms and shadow counters decide what is looked at, never what is found.
-struct StructureCase {
-  RegionOptions regions;
-  std::uint32_t shadow_bits;
-};
-
-std::vector<StructureCase> every_combination() {
-  std::vector<StructureCase> cases;
-  for (const std::size_t groups : {0U, 1U, 4U})
-    for (const std::size_t tunnels : {0U, 1U, 2U})
-      for (const std::uint32_t atoms : {0U, 1U})
-        for (const std::uint32_t shadow_bits : {0U, 1U, 2U, 3U, 4U})
-          cases.push_back({{.groups = groups, .tunnels = tunnels, .atoms = atoms}, shadow_bits});
-  return cases;
-}
-
-std::vector<Row> structure_rows() {
-  return {
-      row("colour", set("/materials/Matte/pbrMetallicRoughness/baseColorFactor", {0.2, 0.7, 0.3, 1})),
-      row("index of refraction", set("/materials/Glass/extensions/KHR_materials_ior/ior", 1.8)),
-      row("let light through", set("/materials/Matte/extensions/KHR_materials_transmission/transmissionFactor", 0.5)),
-      row("part colours", set("/materials/Matte/extensions/KHR_materials_volume/thicknessFactor", 1),
-          set("/materials/Matte/extensions/KHR_materials_dispersion/dispersion", 5)),
-      row("move", set("/nodes/Ball/translation", {0.4, 0.9, 0.3})),
-      row("move two", set("/nodes/MirrorBall/translation", {-1.2, 1.1, 0.2}),
-          set("/nodes/GlassBall/scale", {0.8, 0.8, 0.8})),
-      row("hide", set("/nodes/Ball/extensions/KHR_node_visibility/visible", false)),
-      row("block light again", set("/materials/Matte/extensions/KHR_materials_transmission/transmissionFactor", 0)),
-      row("show", set("/nodes/Ball/extensions/KHR_node_visibility/visible", true)),
-      row("move a light", set("/nodes/Lamp/translation", {1.5, 4.2, 2.5})),
-  };
-}
-
-TEST(Structures, NoCombinationChangesAFrame) {
-  for (const StructureCase& c : every_combination()) {
-    SCOPED_TRACE("groups " + std::to_string(c.regions.groups) + ", tunnels " + std::to_string(c.regions.tunnels) +
-                 ", atoms " + std::to_string(c.regions.atoms) + ", shadow bits " + std::to_string(c.shadow_bits));
-    const ViewOptions view{1, 5, c.shadow_bits};
-    const ScratchFolder folder("structures");
-    Replayer replayer = replayer_of_cache(test_scene(TestScene::study, 40, 30), view, c.regions, folder / "c");
-    for (const Row& row : structure_rows()) {
-      SCOPED_TRACE(row.name);
-      replayer.step(edit_of(row.operations), "structures", ".");
-      const SceneState again = compiled_again(replayer.state());
-      const Image fresh = preprocessed(again.scene(), view);
-      EXPECT_EQ(different_pixels(replayer.image().frame, fresh.frame).size(), 0U);
-      EXPECT_EQ(different_trees(replayer.image(), replayer.state().scene(), fresh, again.scene()), 0U);
-      EXPECT_EQ(stale_tiles(replayer), 0U);
-    }
-  }
-}
 
 }  // namespace
 }  // namespace relook

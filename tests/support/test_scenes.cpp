@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "image/render.h"
+#include "scene/camera.h"
+#include "scene/gltf/import.h"
 
 namespace relook {
 namespace {
@@ -263,6 +265,12 @@ Edit replace_edit(const std::string& pointer, Json value) {
   operation.where = "/edit/0";
   operation.value_where = "/edit/0/value";
   return {operation};
+}
+
+SceneState scene_of_file(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height) {
+  LookDocument document = make_look_document(import_gltf(file));
+  const Camera camera = choose_camera(document, "", width, height);
+  return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
 }
 
 SceneState with_camera(const SceneState& state, const Camera& camera) {

@@ -3,6 +3,7 @@
 // Glass; textures Picture, Marble, Bumps), so that one edit fits all of them.
 #pragma once
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -80,6 +81,8 @@ enum class TestScene { spheres, cards, study };
 /// One "replace".
 [[nodiscard]] Edit replace_edit(const std::string& pointer, Json value);
 
+/// A glTF file, seen by its own camera.
+[[nodiscard]] SceneState scene_of_file(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height);
 /// The same scene through another camera.
 [[nodiscard]] SceneState with_camera(const SceneState& state, const Camera& camera);
 /// Compiled from scratch out of the look document as it is now.
