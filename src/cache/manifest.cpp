@@ -13,7 +13,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "region/path_groups.h"
-#include "trace/tree/shadow_counter.h"
+#include "trace/shadow/shadow_counter.h"
 
 namespace relook {
 namespace {

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/tree_block.h"
 
 namespace relook {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "trace/tree/grow.h"
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 
 namespace relook {
 

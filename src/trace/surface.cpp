@@ -136,6 +136,8 @@ Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float 
 
 namespace {
 
+const TangentFrame kNoFrame{Direction(0, 0, 0), Direction(0, 0, 0)};
+
 /// The frame of the map as KHR_texture_transform lays it: +X along its own u, +Y against its own v.
 TangentFrame turned(const TangentFrame& frame, const Normal& front, const TextureSlot& slot) {
   if (slot.rotation == 0 && slot.scale.x > 0 && slot.scale.y > 0) return frame;
@@ -164,7 +166,7 @@ TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const Surfac
     handedness = t.w < 0 ? -1.0F : 1.0F;
   } else {
     const Mapping mapping = effective_mapping(mesh, slot);
-    if (mapping == Mapping::solid) return {};
+    if (mapping == Mapping::solid) return kNoFrame;
     const Point a = vertex_coordinates(mesh, slot, mapping, triangle[0]);
     const Point b = vertex_coordinates(mesh, slot, mapping, triangle[1]) - a;
     const Point c = vertex_coordinates(mesh, slot, mapping, triangle[2]) - a;
@@ -176,18 +178,15 @@ TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const Surfac
   }
   if (object.flipped) handedness = -handedness;
   const Normal front = point.inside ? -point.shading : point.shading;
-  if (!(tangent.dot(tangent) > 0)) return {};
+  if (!(tangent.dot(tangent) > 0)) return kNoFrame;
   tangent = scaled(tangent);
   tangent = unit_or(tangent - front * front.dot(tangent), Direction(0, 0, 0));
   return turned({tangent, front.cross(tangent) * handedness}, front, slot);
 }
 
 Normal mapped_normal(const TangentFrame& frame, const SurfacePoint& point, Rgba texel, float scale) {
-  const Normal front = point.inside ? -point.shading : point.shading;
-  const float x = (texel.r * 2.0F - 1.0F) * scale, y = (texel.g * 2.0F - 1.0F) * scale, z = texel.b * 2.0F - 1.0F;
-  Normal bent = unit_or(frame.tangent * x + frame.bitangent * y + front * z, front);
-  if (point.inside) bent = -bent;
-  return bent.dot(point.geometric) > 0 ? bent : point.shading;
+  const UnmappedNormals<Normal> normals{point.shading, point.geometric, point.inside};
+  return mapped_normal(frame, normals, Normal(texel.r, texel.g, texel.b), scale, unit_or);
 }
 
 Rgba vertex_color(const Mesh& mesh, const Hit& hit) {

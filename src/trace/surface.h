@@ -2,6 +2,7 @@
 // Pure functions: the same bits whether the hit was just traced or comes out of a cache.
 #pragma once
 #include "base/math.h"
+#include "physics/normal_map.h"
 #include "trace/ray_scene.h"
 #include "trace/tree/ray_tree.h"
 
@@ -36,11 +37,8 @@ struct TextureCoordinates {
 /// Where a procedural texture is evaluated. Requires kind procedural.
 [[nodiscard]] Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at);
 
-/// The axes of a normal map at a hit (glTF 3.9.3), world space, for the front of the surface: unit vectors, or zero
-/// where the mesh gives none.
-struct TangentFrame {
-  Direction tangent{0, 0, 0}, bitangent{0, 0, 0};
-};
+/// The axes of a normal map at a hit, world space.
+using TangentFrame = MapAxes<Direction>;
 [[nodiscard]] TangentFrame tangent_frame(const RayObject& object, const Hit& hit, const SurfacePoint& point,
                                          const TextureSlot& slot);
 

@@ -13,7 +13,7 @@
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "trace/tree/grow.h"
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 
 namespace relook {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "image/path_classes.h"
 #include "image/sampling.h"
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 
 namespace relook {
 namespace {

@@ -1,5 +1,5 @@
 // Shadow counters (paper 4.2) alone, against an unbounded integer, and the words of a path that holds them.
-#include "trace/tree/shadow_counter.h"
+#include "trace/shadow/shadow_counter.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "replay/replay.h"
 #include "test_scenes.h"
 #include "trace/tree/grow.h"
-#include "trace/tree/shadow_counter.h"
+#include "trace/shadow/shadow_counter.h"
 #include "tree_reader.h"
 #include "unbounded_counter.h"
 

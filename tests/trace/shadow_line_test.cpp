@@ -1,5 +1,5 @@
 // What stands on a shadow segment after a change (paper 4.2), against sets of objects that are counted afresh.
-#include "trace/tree/shadow_line.h"
+#include "trace/shadow/shadow_line.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Arithmetic notation for building colour expressions: scalars and triples of values over one ExpressionBuilder.
+// Arithmetic notation for building colour expressions: scalars and triples of values over one ExpressionBuilder. The
+// formulas of src/physics take them as they take floats.
 #pragma once
 #include "color/expression/program.h"
 
@@ -34,6 +35,11 @@ inline Scalar if_positive(Scalar condition, Scalar a, Scalar b) {
   return {a.builder, a.builder->apply(Op::if_positive, condition.value, a.value, b.value)};
 }
 
+/// The table of physics/sheen.h.
+inline Scalar sheen_albedo(Scalar cosine, Scalar roughness) {
+  return {cosine.builder, cosine.builder->apply(Op::sheen_albedo, cosine.value, roughness.value)};
+}
+
 struct Triple {
   Scalar x, y, z;
 };
@@ -41,6 +47,7 @@ inline Triple operator+(Triple a, Triple b) { return {a.x + b.x, a.y + b.y, a.z 
 inline Triple operator-(Triple a, Triple b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 inline Triple operator*(Triple a, Triple b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 inline Triple operator*(Triple a, Scalar s) { return {a.x * s, a.y * s, a.z * s}; }
+inline Triple operator*(Triple a, float s) { return a * number(a.x, s); }
 inline Scalar dot(Triple a, Triple b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Scalar largest(Triple a) { return max(max(a.x, a.y), a.z); }
 inline Triple normalized(Triple a) { return a * (1.0F / sqrt(max(dot(a, a), 1e-30F))); }

@@ -6,7 +6,7 @@
 #include "base/portable_math.h"
 #include "base/vector_clones.h"
 #include "color/expression/field.h"
-#include "color/surface/sheen_albedo.h"
+#include "physics/sheen.h"
 #include "scene/texture/procedural.h"
 #include "trace/surface.h"
 

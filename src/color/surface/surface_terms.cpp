@@ -1,6 +1,6 @@
 #include "color/surface/surface_terms.h"
 
-#include "scene/surface_optics.h"
+#include "physics/dispersion.h"
 
 namespace relook {
 
@@ -37,7 +37,7 @@ Triple SurfaceTerms::emission() {
   return color * field(Field::emissive_strength);
 }
 
-SurfaceTerms::Axes SurfaceTerms::axes(Slot slot) {
+MapAxes<Triple> SurfaceTerms::axes(Slot slot) {
   const Value frame = b_.tangent_frame(slot);
   const auto axis = [&](unsigned first) {
     return Triple{
@@ -49,14 +49,9 @@ SurfaceTerms::Axes SurfaceTerms::axes(Slot slot) {
 Triple SurfaceTerms::normal(Slot slot, Field scale) {
   const Triple smooth = input3(Input::normal);
   if (!has(slot)) return smooth;
-  const auto [tangent, bitangent] = axes(slot);
-  // The frame belongs to the front of the surface; behind it everything is turned round.
-  const Triple front = key_.inside ? smooth * number(-1) : smooth;
-  const Scalar strength = field(scale);
-  const Scalar x = (texel(slot, 0) * 2.0F - 1.0F) * strength, y = (texel(slot, 1) * 2.0F - 1.0F) * strength;
-  const Triple bent = normalized(tangent * x + bitangent * y + front * (texel(slot, 2) * 2.0F - 1.0F));
-  const Triple turned = key_.inside ? bent * number(-1) : bent;
-  return if_positive(dot(turned, input3(Input::geometric)), turned, smooth);
+  const UnmappedNormals<Triple> normals{smooth, input3(Input::geometric), key_.inside};
+  return mapped_normal(axes(slot), normals, texel3(slot), field(scale),
+                       [](const Triple& bent, const Triple&) { return normalized(bent); });
 }
 
 Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
@@ -92,19 +87,14 @@ Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
 Scalar SurfaceTerms::ior() {
   const Scalar middle = field(Field::ior);
   if (channel_ == Channel::all || channel_ == Channel::green) return middle;
-  const Scalar half_spread = (max(middle, 1.0F) - 1.0F) * (field(Field::dispersion) * 0.025F);
-  return channel_ == Channel::red ? max(middle - half_spread, min(middle, 1.0F)) : middle + half_spread;
+  const Scalar dispersion = field(Field::dispersion);
+  return channel_ == Channel::red ? red_ior(middle, dispersion) : blue_ior(middle, dispersion);
 }
 
 Triple SurfaceTerms::beer(Scalar length) {
   const Triple color = field3(Field::attenuation_color);
   const Scalar depth = length / field(Field::attenuation_distance);
   return {exp2(log2(color.x) * depth), exp2(log2(color.y) * depth), exp2(log2(color.z) * depth)};
-}
-
-Scalar mirror_fade(Scalar roughness) {
-  const Scalar t = max(1.0F - roughness / kMirrorThreshold, 0.0F);
-  return t * t * (3.0F - t * 2.0F);
 }
 
 }  // namespace relook

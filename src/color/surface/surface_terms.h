@@ -1,7 +1,8 @@
-// The parts that illumination models share: textured parameters, normals, lamps, child rays, Fresnel terms.
+// The parts that illumination models share: textured parameters, normals, lamps, child rays.
 #pragma once
 #include "color/expression/expression.h"
-#include "color/surface/illumination.h"
+#include "color/surface/node_key.h"
+#include "physics/normal_map.h"
 
 namespace relook {
 
@@ -37,11 +38,8 @@ class SurfaceTerms {
   [[nodiscard]] Scalar occlusion();
   [[nodiscard]] Triple emission();
   [[nodiscard]] Triple normal(Slot slot, Field scale);
-  /// The axes of a map, for the front of the surface; zero where the mesh gives none.
-  struct Axes {
-    Triple tangent, bitangent;
-  };
-  [[nodiscard]] Axes axes(Slot slot);
+  /// The axes of a map; zero where the mesh gives none.
+  [[nodiscard]] MapAxes<Triple> axes(Slot slot);
   [[nodiscard]] Triple view() { return input3(Input::view); }
   [[nodiscard]] Triple ambient() { return {{&b_, b_.ambient(0)}, {&b_, b_.ambient(1)}, {&b_, b_.ambient(2)}}; }
 
@@ -75,18 +73,5 @@ class SurfaceTerms {
   const NodeKey& key_;
   Channel channel_ = Channel::all;
 };
-
-[[nodiscard]] inline Scalar fifth_power(Scalar m) {
-  const Scalar m2 = m * m;
-  return m2 * m2 * m;
-}
-/// Schlick's weight (1 - c)^5 for a cosine in [0, 1].
-[[nodiscard]] inline Scalar schlick(Scalar cosine) { return fifth_power(1.0F - min(cosine, 1.0F)); }
-/// The share of a mirror ray that a roughness leaves: 1 at 0, 0 from the mirror threshold on.
-[[nodiscard]] Scalar mirror_fade(Scalar roughness);
-
-/// What an illumination model says about a surface, before coverage.
-[[nodiscard]] Triple metallic_roughness_color(SurfaceTerms& terms);
-[[nodiscard]] Triple blinn_phong_color(SurfaceTerms& terms);
 
 }  // namespace relook

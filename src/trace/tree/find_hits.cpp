@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "trace/tree/grow.h"
-#include "trace/tree/shadow_counter.h"
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_counter.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {

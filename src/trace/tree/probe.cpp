@@ -2,7 +2,7 @@
 
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "trace/tree/path_cursor.h"
-#include "trace/tree/shadow_counter.h"
+#include "trace/shadow/shadow_counter.h"
 
 namespace relook {
 

@@ -2,24 +2,19 @@
 
 #include <cmath>
 
+#include "physics/dispersion.h"
+#include "physics/fresnel.h"
+#include "physics/mirror.h"
+
 namespace relook {
 namespace {
 
 constexpr float kFresnelCut = 1e-3F;
 
-/// Unpolarised reflectance of a dielectric boundary; eta: index behind over index in front. 1 at total reflection.
-float dielectric_reflectance(float cos_in, float eta) {
-  const float sin2 = (1.0F - cos_in * cos_in) / (eta * eta);
-  if (sin2 >= 1.0F) return 1.0F;
-  const float cos_out = std::sqrt(1.0F - sin2);
-  const float s = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
-  const float p = (cos_out - eta * cos_in) / (cos_out + eta * cos_in);
-  return 0.5F * (s * s + p * p);
-}
-
-float coat_reflectance(float cosine) {
+/// Of a coat, at a cosine of at most 1. Its weight is Schlick's but for the order of the products.
+float coat_term(float cosine) {
   const float m = 1.0F - cosine;
-  return 0.04F + 0.96F * (m * m * m * m * m);
+  return coat_reflectance(m * m * m * m * m);
 }
 
 Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, float scale) {
@@ -31,19 +26,8 @@ Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, f
 
 /// The index of refraction for a channel; all of them: that of the middle.
 float channel_ior(const SurfaceOptics& optics, Channel channel) {
-  const float half_spread = (optics.ior - 1.0F) * (0.025F * optics.dispersion);
-  if (channel == Channel::red) return std::fmax(optics.ior - half_spread, 1.0F);
-  return channel == Channel::blue ? optics.ior + half_spread : optics.ior;
-}
-
-Direction unit(const Direction& v) { return v / std::sqrt(v.dot(v)); }
-
-/// The mirror direction, kept on the outer side of the geometric surface.
-Direction mirrored(const Direction& d, const Normal& n, const Normal& geometric) {
-  Direction r = d - n * (2.0F * d.dot(n));
-  const float height = r.dot(geometric);
-  if (height < 0) r = r - geometric * (2.0F * height);
-  return unit(r);
+  if (channel == Channel::red) return red_ior(optics.ior, optics.dispersion);
+  return channel == Channel::blue ? blue_ior(optics.ior, optics.dispersion) : optics.ior;
 }
 
 /// Collects the rays of one hit.
@@ -133,7 +117,7 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
   if (optics.coat_reflects && !node.point.inside) {
     const Normal coat = normal_of_slot(node, object, Slot::clearcoat_normal, material.clearcoat_normal_scale);
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
-                coat_reflectance(std::fmin(std::fmax(-d.dot(coat), 1e-4F), 1.0F)));
+                coat_term(std::fmin(std::fmax(-d.dot(coat), 1e-4F), 1.0F)));
   }
   const auto refract = [&](Branch branch, float eta, float passed) {
     if (!optics.bent) return spawner.add_straight(branch, passed);

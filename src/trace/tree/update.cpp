@@ -4,7 +4,7 @@
 #include "trace/object_rays.h"
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
-#include "trace/tree/shadow_line.h"
+#include "trace/shadow/shadow_line.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {

@@ -1,4 +1,4 @@
-#include "color/surface/sheen_albedo.h"
+#include "physics/sheen.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "trace/tree/shadow_line.h"
+#include "trace/shadow/shadow_line.h"
 
 #include <algorithm>
 

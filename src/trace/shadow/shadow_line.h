@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "trace/tracer.h"
-#include "trace/tree/shadow_counter.h"
+#include "trace/shadow/shadow_counter.h"
 
 namespace relook {
 

@@ -1,4 +1,4 @@
-#include "trace/tree/shadow_segment.h"
+#include "trace/shadow/shadow_segment.h"
 
 #include <cmath>
 
