@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "trace/tree/grow.h"
 #include "trace/shadow/shadow_segment.h"
+#include "trace/tree/grow.h"
 
 namespace relook {
 

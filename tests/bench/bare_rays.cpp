@@ -12,8 +12,8 @@
 
 #include "base/parallel.h"
 #include "image/sampling.h"
-#include "trace/tree/grow.h"
 #include "trace/shadow/shadow_segment.h"
+#include "trace/tree/grow.h"
 
 namespace relook {
 namespace {

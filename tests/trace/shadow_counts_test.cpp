@@ -9,8 +9,8 @@
 #include "reference_tracer.h"
 #include "replay/replay.h"
 #include "test_scenes.h"
-#include "trace/tree/grow.h"
 #include "trace/shadow/shadow_counter.h"
+#include "trace/tree/grow.h"
 #include "tree_reader.h"
 #include "unbounded_counter.h"
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "trace/tracer.h"
 #include "trace/shadow/shadow_counter.h"
+#include "trace/tracer.h"
 
 namespace relook {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "trace/tree/grow.h"
 #include "trace/shadow/shadow_counter.h"
 #include "trace/shadow/shadow_segment.h"
+#include "trace/tree/grow.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {

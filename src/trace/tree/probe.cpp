@@ -1,8 +1,8 @@
 #include "trace/tree/probe.h"
 
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
-#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "trace/tree/path_cursor.h"
 #include "trace/shadow/shadow_counter.h"
+#include "trace/tree/path_cursor.h"
 
 namespace relook {
 

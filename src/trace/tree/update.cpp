@@ -2,9 +2,9 @@
 // touches is traced against the whole scene.
 #include "trace/box_range.h"
 #include "trace/object_rays.h"
+#include "trace/shadow/shadow_line.h"
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
-#include "trace/shadow/shadow_line.h"
 #include "trace/tree/spawn.h"
 
 namespace relook {
