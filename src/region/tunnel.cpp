@@ -178,7 +178,7 @@ void enclose(Sections& tunnel, std::span<const TunnelSection> other) {
 namespace {
 
 LightEnd end_of(const RayLight& light) {
-  const bool directional = light.kind == LightKind::directional;
+  const bool directional = !traits_of(light.kind).has_place;
   return {directional, Box(directional ? -light.direction : light.position)};
 }
 

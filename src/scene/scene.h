@@ -10,6 +10,7 @@
 #include "base/id.h"
 #include "base/math.h"
 #include "scene/camera.h"
+#include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
 
@@ -54,23 +55,6 @@ struct Object {
   SharedDeformation deformation;            // before displacement
   std::optional<Displacement> displacement;
   bool operator==(const Object&) const = default;
-};
-
-enum class LightKind : std::uint8_t { point, spot, directional };
-
-/// One placed light (KHR_lights_punctual).
-struct Light {
-  std::string node;            // node that places it
-  std::string light;           // /lights/<name>
-  bool alive = true;           // false: deleted or hidden
-  LightKind kind = LightKind::point;
-  Point position{0, 0, 0};     // point, spot: from the camera's eye
-  Direction direction{0, 0, -1};  // spot, directional: unit, the way the light travels
-  Color color{1, 1, 1};
-  float intensity = 1;         // candela, or lux for directional
-  float range = std::numeric_limits<float>::infinity();
-  float inner_cone = 0, outer_cone = 0.785398F;  // radians
-  bool operator==(const Light&) const = default;
 };
 
 /// What rays that miss everything see (extras.relook of the scene).

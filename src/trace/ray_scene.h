@@ -15,8 +15,8 @@ namespace relook {
 /// What shadow segments need of a light.
 struct RayLight {
   LightKind kind = LightKind::point;
-  Point position{0, 0, 0};        // point, spot
-  Direction direction{0, 0, -1};  // spot, directional: unit, the way the light travels
+  Point position{0, 0, 0};        // where it has a place
+  Direction direction{0, 0, -1};  // where it has one: unit, the way the light travels
 
   RayLight() = default;
   RayLight(const Light& light) : kind(light.kind), position(light.position), direction(light.direction) {}

@@ -57,11 +57,11 @@ Triple SurfaceTerms::normal(Slot slot, Field scale) {
 Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
   const LightId id = visible.light;
   const auto of = [&](LightField f) { return Scalar{&b_, b_.light(id, f)}; };
-  const LightKind kind = b_.scene().light(id).kind;
+  const LightTraits& traits = traits_of(b_.scene().light(id).kind);
   const Triple color{of(LightField::red), of(LightField::green), of(LightField::blue)};
   const Triple axis{of(LightField::dx), of(LightField::dy), of(LightField::dz)};
   Incidence incidence{axis * number(-1), color * of(LightField::intensity)};
-  if (kind != LightKind::directional) {
+  if (traits.has_place) {
     const Triple way = Triple{of(LightField::x), of(LightField::y), of(LightField::z)} - input3(Input::position);
     const Scalar distance2 = max(dot(way, way), 1e-8F);
     const Scalar distance = sqrt(distance2);
@@ -69,7 +69,7 @@ Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
     const Scalar reach = distance * of(LightField::inverse_range);
     const Scalar reach2 = reach * reach;
     Scalar share = max(1.0F - reach2 * reach2, 0.0F) / distance2;
-    if (kind == LightKind::spot) {
+    if (traits.has_cone) {
       // Cosines near 1 have no digits left for narrow cones: 1 - cos is half the square of what lies between
       // directions.
       const Triple beside = incidence.direction + axis;

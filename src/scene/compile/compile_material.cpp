@@ -208,14 +208,13 @@ Displacement compile_displacement(const CompileContext& context, const Json& val
 }
 
 Light compile_light(std::string_view file, const std::string& name, const Json& value, const std::string& pointer) {
-  constexpr std::array<std::string_view, 3> kKinds{"point", "spot", "directional"};
   Light light;
   light.light = name;
-  light.kind = enum_of<LightKind>(value["type"], kKinds);
+  light.kind = enum_of<LightKind>(value["type"], light_words());
   light.color = color_of(value["color"]);
   light.intensity = float_of(value["intensity"]);
-  if (value.contains("range") && light.kind != LightKind::directional) light.range = float_of(value["range"]);
-  if (light.kind != LightKind::spot) return light;
+  if (value.contains("range") && traits_of(light.kind).has_place) light.range = float_of(value["range"]);
+  if (!traits_of(light.kind).has_cone) return light;
   light.inner_cone = float_of(value["spot"]["innerConeAngle"]);
   light.outer_cone = float_of(value["spot"]["outerConeAngle"]);
   if (!(light.inner_cone <= light.outer_cone))

@@ -348,11 +348,11 @@ void Compilation::update_light(const std::string& name, const Json& node, NodeRe
   const Imath::V3d back(record.world[2][0], record.world[2][1], record.world[2][2]);
   const double length = std::sqrt(back.x * back.x + back.y * back.y + back.z * back.z);
   const bool has_direction = length > 1e-12;
-  if (light.kind != LightKind::point && has_direction) light.direction = unit_direction(-back, length);
-  if (light.kind != LightKind::directional)
+  if (traits_of(light.kind).has_direction && has_direction) light.direction = unit_direction(-back, length);
+  if (traits_of(light.kind).has_place)
     for (int axis = 0; axis < 3; ++axis)
       light.position[axis] = static_cast<float>(record.world[3][axis] - scene_.camera.eye[axis]) + 0.0F;
-  light.alive = record.visible && (has_direction || light.kind == LightKind::point);
+  light.alive = record.visible && (has_direction || !traits_of(light.kind).has_direction);
   const auto [slot, is_new] =
       index_.lights.try_emplace(name, LightId(static_cast<std::uint32_t>(scene_.lights.size())));
   if (is_new) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "scene/light.h"
+
 namespace relook {
 namespace {
 
@@ -196,7 +198,8 @@ const Schema& mesh_schema() {
 const Schema& light_schema() {
   static const Schema spot{{number("innerConeAngle", 0.0, 0, kRightAngle),
                             number("outerConeAngle", 0.7853981633974483, 0, kRightAngle)}};
-  static const Schema light{{text("name"), choice("type", {}, {"point", "spot", "directional"}, true),
+  constexpr auto kWords = light_words();
+  static const Schema light{{text("name"), choice("type", {}, {kWords.begin(), kWords.end()}, true),
                              reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kLargest),
                              unwritten(number("range", {}, kAboveZero, kHuge)), optional("spot", spot)}};
   return light;

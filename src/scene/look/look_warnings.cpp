@@ -5,6 +5,7 @@
 #include <set>
 
 #include "scene/compile/compile_material.h"
+#include "scene/light.h"
 #include "scene/look/look_bounds.h"
 #include "scene/look/look_schema.h"
 
@@ -66,7 +67,9 @@ void warn_of_places(const LookDocument& document, std::vector<std::string>& warn
     const Json* light = member_at(node, {"extensions", "KHR_lights_punctual", "light"});
     if (light == nullptr) return;
     const Json& type = document.look.at("lights").at(light->get<std::string>()).at("type");
-    if (type == "point" || Imath::V3d(world[2][0], world[2][1], world[2][2]).length() > 1e-12) return;
+    const bool needs_none = std::ranges::any_of(
+        kLightTraits, [&](const LightTraits& kind) { return type == kind.word && !kind.has_direction; });
+    if (needs_none || Imath::V3d(world[2][0], world[2][1], world[2][2]).length() > 1e-12) return;
     lights.add("node \"" + name + "\" is scaled to nothing: its light has no direction and gives no light");
   });
 }

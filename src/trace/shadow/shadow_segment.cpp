@@ -6,7 +6,7 @@ namespace relook {
 
 ShadowSegment shadow_segment(const SurfacePoint& point, const RayLight& light) {
   ShadowSegment segment;
-  const bool directional = light.kind == LightKind::directional;
+  const bool directional = !traits_of(light.kind).has_place;
   const Direction to_light = directional ? -light.direction : light.position - point.position;
   segment.faces = point.shading.dot(to_light) > 0;
   // A light near the horizon of the triangle is judged from the smooth surface.
