@@ -58,7 +58,7 @@ TEST_P(ClassOfChange, is_what_replay_does) {
 
 INSTANTIATE_TEST_SUITE_P(Seeded, ClassOfChange,
                          testing::Values(TestScene::spheres, TestScene::cards, TestScene::study),
-                         [](const auto& info) { return std::string(test_scene_name(info.param)); });
+                         [](const auto& scene) { return std::string(test_scene_name(scene.param)); });
 
 }  // namespace
 }  // namespace relook
