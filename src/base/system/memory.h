@@ -7,7 +7,7 @@
 
 namespace relook {
 
-/// The resident set now.
+/// The resident set now. Not for a child of fork(): it would be told of the process that asked first.
 [[nodiscard]] std::uint64_t resident_set_bytes();
 
 /// Keeps a value until the process ends, and its memory with it: for what would take long to take apart for nothing.
