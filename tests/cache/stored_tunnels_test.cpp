@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <tuple>
 
 #include "base/hash.h"
 #include "cache/manifest.h"
@@ -98,47 +99,65 @@ class StoredTunnelsTest : public testing::Test {
   std::filesystem::path cache_ = folder_ / "c";
 };
 
-TEST_F(StoredTunnelsTest, EqualThoseThatAreBuiltValueByValue) {
-  for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study})
-    for (const RegionOptions& shape : shapes())
-      for (const std::uint32_t samples : {1U, 4U}) {
-        SCOPED_TRACE(std::string(test_scene_name(scene)) + " " + text_of_shape(shape));
-        const SceneState state = test_scene(scene, 150, 70);
-        const ViewOptions view{samples, 5, 1};
-        write(state, view, shape);
-        const Replayer replayer(compiled_again(state), preprocessed(state.scene(), view), shape);
-        const auto tunnels = StoredTunnels::of_cache(cache_, manifest(), replayer.image().paths);
-        EXPECT_EQ(tunnels != nullptr, replayer.regions().may_have_tunnels(replayer.image()));
-        if (!tunnels) continue;
-        const ImageRegions built = fresh_regions(replayer);
-        StoredTunnels& stored = *tunnels;
-        for (std::size_t tile = 0; tile < replayer.image().trees.size(); ++tile) {
-          EXPECT_TRUE(stored.around(tile) == built.around(tile)) << tile;
-          EXPECT_TRUE(stored.read(tile) == built.tunnels(tile)) << tile;
-        }
-        EXPECT_TRUE(stored.take_faults().empty());
-        EXPECT_TRUE(check_cache(cache_).findings.empty());
-      }
-}
+/// Every scene with one and with several samples.
+class StoredTunnelsOfScene : public StoredTunnelsTest,
+                             public testing::WithParamInterface<std::tuple<TestScene, std::uint32_t>> {};
 
-TEST_F(StoredTunnelsTest, GiveTheFramesOfAFullRenderAndTheCountersOfBuiltOnes) {
+TEST_P(StoredTunnelsOfScene, EqualThoseThatAreBuiltValueByValue) {
+  const auto [scene, samples] = GetParam();
   for (const RegionOptions& shape : shapes()) {
-    const SceneState state = test_scene(TestScene::study, 90, 70);
-    write(state, {1, 5, 1}, shape);
-    expect_exact(shape, 0, text_of_shape(shape));
-    OpenedCache opened = opened_cache(cache_);
-    Replayer reads(std::move(*opened.state), std::move(opened.image), shape, nullptr, opened.tunnels);
-    Replayer builds(compiled_again(state), preprocessed(state.scene(), {1, 5, 1}), shape);
-    for (const char* edit : {kOptics, kMove, kMoveOther}) {
-      const StepResult a = reads.step(edit_of_text(edit), "a", "."), b = builds.step(edit_of_text(edit), "b", ".");
-      EXPECT_EQ(a.counters.ray_tests, b.counters.ray_tests);
-      EXPECT_EQ(a.counters.samples_affected, b.counters.samples_affected);
-      EXPECT_EQ(a.counters.by_tunnels.visited, b.counters.by_tunnels.visited);
-      EXPECT_EQ(b.counters.tunnels_read, 0U);
-      EXPECT_EQ(a.counters.rebuilt.tunnels + b.counters.rebuilt.tunnels, 0U);
+    SCOPED_TRACE(text_of_shape(shape));
+    const SceneState state = test_scene(scene, 150, 70);
+    const ViewOptions view{samples, 5, 1};
+    write(state, view, shape);
+    const Replayer replayer(compiled_again(state), preprocessed(state.scene(), view), shape);
+    const auto tunnels = StoredTunnels::of_cache(cache_, manifest(), replayer.image().paths);
+    EXPECT_EQ(tunnels != nullptr, replayer.regions().may_have_tunnels(replayer.image()));
+    if (!tunnels) continue;
+    const ImageRegions built = fresh_regions(replayer);
+    StoredTunnels& stored = *tunnels;
+    for (std::size_t tile = 0; tile < replayer.image().trees.size(); ++tile) {
+      EXPECT_TRUE(stored.around(tile) == built.around(tile)) << tile;
+      EXPECT_TRUE(stored.read(tile) == built.tunnels(tile)) << tile;
     }
+    EXPECT_TRUE(stored.take_faults().empty());
+    EXPECT_TRUE(check_cache(cache_).findings.empty());
   }
 }
+
+std::string scene_name(const testing::TestParamInfo<std::tuple<TestScene, std::uint32_t>>& info) {
+  return std::string(test_scene_name(std::get<0>(info.param))) + "_" + std::to_string(std::get<1>(info.param)) +
+         "_samples";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, StoredTunnelsOfScene,
+                         testing::Combine(testing::Values(TestScene::spheres, TestScene::cards, TestScene::study),
+                                          testing::Values(1U, 4U)),
+                         scene_name);
+
+/// Each of shapes(), by number.
+class StoredTunnelsOfShape : public StoredTunnelsTest, public testing::WithParamInterface<std::size_t> {};
+
+TEST_P(StoredTunnelsOfShape, GiveTheFramesOfAFullRenderAndTheCountersOfBuiltOnes) {
+  const RegionOptions shape = shapes().at(GetParam());
+  SCOPED_TRACE(text_of_shape(shape));
+  const SceneState state = test_scene(TestScene::study, 90, 70);
+  write(state, {1, 5, 1}, shape);
+  expect_exact(shape, 0, text_of_shape(shape));
+  OpenedCache opened = opened_cache(cache_);
+  Replayer reads(std::move(*opened.state), std::move(opened.image), shape, nullptr, opened.tunnels);
+  Replayer builds(compiled_again(state), preprocessed(state.scene(), {1, 5, 1}), shape);
+  for (const char* edit : {kOptics, kMove, kMoveOther}) {
+    const StepResult a = reads.step(edit_of_text(edit), "a", "."), b = builds.step(edit_of_text(edit), "b", ".");
+    EXPECT_EQ(a.counters.ray_tests, b.counters.ray_tests);
+    EXPECT_EQ(a.counters.samples_affected, b.counters.samples_affected);
+    EXPECT_EQ(a.counters.by_tunnels.visited, b.counters.by_tunnels.visited);
+    EXPECT_EQ(b.counters.tunnels_read, 0U);
+    EXPECT_EQ(a.counters.rebuilt.tunnels + b.counters.rebuilt.tunnels, 0U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, StoredTunnelsOfShape, testing::Range(std::size_t{0}, shapes().size()));
 
 TEST_F(StoredTunnelsTest, AreNotReadBeforeAStepNeedsThem) {
   write(test_scene(TestScene::study, 150, 70), {1, 5}, {});

@@ -19,13 +19,20 @@ const std::filesystem::path kProject = RELOOK_SOURCE_DIR;
 
 /// What a step has changed about where things are, from the scenes before and after alone.
 struct Moved {
-  bool objects = false;      // an object is there, is gone, or has another place or form
+  bool objects = false;      // an object is there, is gone, or has another place, form, holes or back faces
   bool light_paths = false;  // a surface lets light pass that did not, or the other way round
   bool lights = false;       // a light is there that was not, or has another place
 };
 
-bool passes_light(const Scene& scene, const Object& object) {
-  return surface_optics(scene.material(object.material), scene.mesh(object.mesh)).passes_light;
+SurfaceOptics optics_of(const Scene& scene, const Object& object) {
+  return surface_optics(scene.material(object.material), scene.mesh(object.mesh));
+}
+
+/// Is a surface met by the same rays in the same places?
+bool same_extent(const SurfaceOptics& a, const Material& then, const SurfaceOptics& b, const Material& now) {
+  const bool same_holes = then.alpha_cutoff == now.alpha_cutoff && then.base_color.a == now.base_color.a &&
+                          then.slot(Slot::base_color) == now.slot(Slot::base_color);
+  return a.cut_out == b.cut_out && a.culls_back == b.culls_back && (same_holes || !a.cut_out);
 }
 
 /// Ids are those of one state before and after an edit.
@@ -38,7 +45,10 @@ Moved moved_between(const Scene& before, const Scene& after) {
       continue;
     }
     Object then = before.objects[i];
-    moved.light_paths |= passes_light(before, then) != passes_light(after, now);
+    const SurfaceOptics old_optics = optics_of(before, then), optics = optics_of(after, now);
+    moved.light_paths |= old_optics.passes_light != optics.passes_light;
+    moved.objects |=
+        !same_extent(old_optics, before.material(then.material), optics, after.material(now.material));
     then.material = now.material;
     moved.objects |= !(then == now);
   }

@@ -1,6 +1,8 @@
 // Groups, tunnels, atoms and shadow counters decide what is looked at, never what is found.
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include "matrix_rows.h"
 #include "region_checks.h"
 #include "run_program.h"
@@ -40,6 +42,11 @@ std::vector<MatrixRow> structure_rows() {
       row("show", set("/nodes/Ball/extensions/KHR_node_visibility/visible", true)),
       row("move a light", set("/nodes/Lamp/translation", {1.5, 4.2, 2.5})),
   };
+}
+
+void PrintTo(const StructureCase& c, std::ostream* out) {
+  *out << c.regions.groups << " groups, " << c.regions.tunnels << " tunnels, " << c.regions.atoms << " atoms, "
+       << c.shadow_bits << " shadow bits";
 }
 
 std::string structures_name(const testing::TestParamInfo<StructureCase>& info) {
