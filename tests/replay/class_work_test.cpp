@@ -1,6 +1,6 @@
-// The class that a step is said to be of is the work that it does (paper 2.1): each step of the journals that have a row
-// of Table 1 or of Table 3 for each step. A change of colours shoots no ray; one of optics tests nothing against a moved
-// selection, but the segments to lights where other surfaces let light pass; one of geometry tests what it moves.
+// The class that a step is said to be of is the work that it does (paper 2.1): each step of the journals that have a
+// row of Table 1 or of Table 3 for each step. A change of colours shoots no ray; one of optics tests nothing against a
+// moved selection, but the segments to lights where other surfaces let light pass; one of geometry tests what it moves.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -47,8 +47,7 @@ Moved moved_between(const Scene& before, const Scene& after) {
     Object then = before.objects[i];
     const SurfaceOptics old_optics = optics_of(before, then), optics = optics_of(after, now);
     moved.light_paths |= old_optics.passes_light != optics.passes_light;
-    moved.objects |=
-        !same_extent(old_optics, before.material(then.material), optics, after.material(now.material));
+    moved.objects |= !same_extent(old_optics, before.material(then.material), optics, after.material(now.material));
     then.material = now.material;
     moved.objects |= !(then == now);
   }

@@ -1,5 +1,5 @@
-// Edits that deform meshes: after each the replayed frame has the bits of a full render of the edited scene, and the ray
-// trees are those that a fresh preprocess finds.
+// Edits that deform meshes: after each the replayed frame has the bits of a full render of the edited scene, and the
+// ray trees are those that a fresh preprocess finds.
 #include <gtest/gtest.h>
 
 #include <cmath>
