@@ -1,7 +1,9 @@
 #include "trace/tree/ray_path.h"
 
 #include <algorithm>
+#include <bit>
 #include <new>
+#include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -9,23 +11,50 @@
 #include "trace/tree/path_cursor.h"
 
 namespace relook {
+namespace {
+
+std::uint32_t hash_of(std::span<const std::uint32_t> path) {
+  return static_cast<std::uint32_t>(hash64(std::as_bytes(path)));
+}
+
+}  // namespace
 
 PathId PathTable::intern(std::span<const std::uint32_t> path) {
-  const std::uint64_t hash = hash_of(path);
-  const auto [first, last] = ids_.equal_range(hash);
-  for (auto it = first; it != last; ++it)
-    if (std::ranges::equal(words(it->second), path)) return it->second;
+  reserve(size() + 1);
+  const std::uint32_t hash = hash_of(path);
+  Place& place = place_of(path, hash);
+  if (!place.id.is_none()) return place.id;
   if (size() >= PathId::none().index()) throw std::bad_alloc();  // more than ids can tell
   const PathId id(static_cast<std::uint32_t>(size()));
   words_.insert(words_.end(), path.begin(), path.end());
   offsets_.push_back(words_.size());
-  ids_.emplace(hash, id);
+  place = {id, hash};
   return id;
+}
+
+PathTable::Place& PathTable::place_of(std::span<const std::uint32_t> path, std::uint32_t hash) {
+  const std::size_t mask = index_.size() - 1;
+  for (std::size_t i = hash & mask;; i = (i + 1) & mask) {
+    Place& place = index_[i];
+    if (place.id.is_none() || (place.hash == hash && std::ranges::equal(words(place.id), path))) return place;
+  }
+}
+
+void PathTable::reserve(std::size_t paths) {
+  if (2 * paths <= index_.size()) return;
+  const std::vector<Place> old = std::exchange(index_, std::vector<Place>(std::bit_ceil(std::max<std::size_t>(2 * paths, 16))));
+  const std::size_t mask = index_.size() - 1;
+  for (const Place& place : old) {
+    if (place.id.is_none()) continue;
+    std::size_t i = place.hash & mask;
+    while (!index_[i].id.is_none()) i = (i + 1) & mask;
+    index_[i] = place;
+  }
 }
 
 std::size_t PathTable::bytes() const {
   return words_.capacity() * sizeof(std::uint32_t) + offsets_.capacity() * sizeof(std::uint64_t) +
-         ids_.size() * (sizeof(std::uint64_t) + sizeof(PathId) + 2 * sizeof(void*));
+         index_.capacity() * sizeof(Place);
 }
 
 PathTable PathTable::from_columns(std::vector<std::uint32_t> words, std::vector<std::uint64_t> offsets) {
@@ -33,12 +62,15 @@ PathTable PathTable::from_columns(std::vector<std::uint32_t> words, std::vector<
   PathTable table;
   table.words_ = std::move(words);
   table.offsets_ = std::move(offsets);
-  table.ids_.reserve(table.size());
-  for (std::uint32_t i = 0; i < table.size(); ++i) table.ids_.emplace(table.hash_of(table.words(PathId(i))), PathId(i));
+  table.reserve(table.size());
+  for (std::uint32_t i = 0; i < table.size(); ++i) {
+    const std::span<const std::uint32_t> path = table.words(PathId(i));
+    const std::uint32_t hash = hash_of(path);
+    Place& place = table.place_of(path, hash);
+    if (place.id.is_none()) place = {PathId(i), hash};
+  }
   return table;
 }
-
-std::uint64_t PathTable::hash_of(std::span<const std::uint32_t> path) const { return hash64(std::as_bytes(path)); }
 
 std::size_t hit_count(std::span<const std::uint32_t> words, const PathLayout& layout) {
   std::size_t hits = 0;

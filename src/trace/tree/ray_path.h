@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "base/id.h"
@@ -45,11 +44,18 @@ class PathTable {
   static PathTable from_columns(std::vector<std::uint32_t> words, std::vector<std::uint64_t> offsets);
 
  private:
-  [[nodiscard]] std::uint64_t hash_of(std::span<const std::uint32_t> words) const;
+  /// Where a path stands in the index, or an empty place for it.
+  struct Place {
+    PathId id;  // none: empty
+    std::uint32_t hash = 0;
+  };
+  [[nodiscard]] Place& place_of(std::span<const std::uint32_t> path, std::uint32_t hash);
+  /// Makes room for that many paths.
+  void reserve(std::size_t paths);
 
   std::vector<std::uint32_t> words_;
   std::vector<std::uint64_t> offsets_{0};               // [size() + 1]
-  std::unordered_multimap<std::uint64_t, PathId> ids_;  // by hash of the words
+  std::vector<Place> index_;  // by hash of the words, linear probing; a power of two, at most half full
 };
 
 /// Number of hits (nodes and filters) that a ray tree with this path stores; and sentences about what is malformed for
