@@ -1,5 +1,5 @@
-// The lobe of brushed surfaces (KHR_materials_anisotropy; Burley 2012, equation 13; Heitz 2014, section 5.4): ggx.h with
-// an alpha along the brush, the wider, and one across it.
+// The lobe of brushed surfaces (KHR_materials_anisotropy; Burley 2012, equation 13; Heitz 2014, section 5.4): ggx.h
+// with an alpha along the brush, the wider, and one across it.
 #pragma once
 #include "physics/scalar.h"
 

@@ -1,6 +1,6 @@
-// How much a boundary reflects: cosines of incidence and indices of refraction in, reflectances of unpolarised light out.
-// Fresnel's equations (Born and Wolf 1999, 1.5.2), Schlick's approximation (1994, equation 15; glTF 2.0, appendix B.3.4)
-// and KHR_materials_clearcoat's boundary of a coat.
+// How much a boundary reflects: cosines of incidence and indices of refraction in, reflectances of unpolarised light
+// out. Fresnel's equations (Born and Wolf 1999, 1.5.2), Schlick's approximation (1994, equation 15; glTF 2.0, appendix
+// B.3.4) and KHR_materials_clearcoat's boundary of a coat.
 #pragma once
 #include "physics/scalar.h"
 

@@ -1,5 +1,5 @@
-// Illumination models as colour expressions: what SHADING.md defines, written once for every pixel. A node's key and its
-// material's values of structure in, its colour program out.
+// Illumination models as colour expressions: what SHADING.md defines, written once for every pixel. A node's key and
+// its material's values of structure in, its colour program out.
 #pragma once
 #include "color/expression/program.h"
 #include "color/surface/node_key.h"
