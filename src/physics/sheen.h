@@ -32,8 +32,8 @@ template <class S>
   return distribution * ashikhmin_visibility(nl, nv);
 }
 
-/// The directional albedo of the lobe: the share of the light from a hemisphere that a white sheen layer sends towards a
-/// viewer at cosine `cosine`; at most 1. Bilinear in a 10 x 10 table over (roughness, sqrt(cosine)).
+/// The directional albedo of the lobe: the share of the light from a hemisphere that a white sheen layer sends towards
+/// a viewer at cosine `cosine`; at most 1. Bilinear in a 10 x 10 table over (roughness, sqrt(cosine)).
 [[nodiscard]] float sheen_albedo(float cosine, float roughness);
 
 /// What a layer of this colour leaves of the light from below.

@@ -75,8 +75,8 @@ template <class S>
 
 }  // namespace thin_film
 
-/// For unpolarised light at a cosine of incidence; `f0`: of the bare surface in air at normal incidence. Not negative; a
-/// channel may lie a little above 1, since colours of one wavelength lie outside Rec.709.
+/// For unpolarised light at a cosine of incidence; `f0`: of the bare surface in air at normal incidence. Not negative;
+/// a channel may lie a little above 1, since colours of one wavelength lie outside Rec.709.
 template <class C>
 [[nodiscard]] C film_reflectance(const ThinFilm<ScalarOf<C>>& film, const C& f0, ScalarOf<C> cosine) {
   using S = ScalarOf<C>;

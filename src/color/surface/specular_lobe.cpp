@@ -23,8 +23,7 @@ SpecularLobe::SpecularLobe(SurfaceTerms& terms, Scalar roughness)
   brush_ = {axes, dot(axes.along, axes.along), square(strength)};
 }
 
-Scalar SpecularLobe::value(const LobeAngles<Triple>& at, const Triple& direction, const Triple& view,
-                           Scalar nv) const {
+Scalar SpecularLobe::value(const LobeAngles<Triple>& at, const Triple& direction, const Triple& view, Scalar nv) const {
   const Scalar isotropic = ggx(alpha2_, at.nh, at.nl, nv);
   if (!brush_) return isotropic;
   const Scalar alpha = alpha_of(roughness_);
