@@ -27,7 +27,6 @@ using MeshId = Id<struct MeshTag>;
 using MaterialId = Id<struct MaterialTag>;
 using LightId = Id<struct LightTag>;
 using PathId = Id<struct PathTag>;
-using ProgramId = Id<struct ProgramTag>;
 
 }  // namespace relook
 

@@ -51,15 +51,6 @@ namespace relook {
   return x < 1.17549435e-38F ? -127.0F : static_cast<float>(exponent) + log2_m;
 }
 
-/// x^y for x >= 0; 0^0 = 1, 0^y = 0.
-[[nodiscard, gnu::always_inline]] inline float portable_pow(float x, float y) {
-  const float power = portable_exp2(y * portable_log2(x));
-  return y == 0.0F ? 1.0F : (x <= 0.0F ? 0.0F : power);
-}
-
-/// exp(x)
-[[nodiscard, gnu::always_inline]] inline float portable_exp(float x) { return portable_exp2(x * 1.44269504F); }
-
 /// sin(2 pi x), for |x| < 2^31.
 [[nodiscard, gnu::always_inline]] inline float portable_sin_turns(float x) {
   const float f = x - portable_floor(x + 0.5F);  // [-1/2, 1/2]

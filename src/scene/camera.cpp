@@ -121,7 +121,7 @@ Camera placed_camera(const LookDocument& document, std::string_view shown_name, 
   const Json& gltf = document.cameras.at(name).at("camera");
   const std::string pointer = "/cameras/" + escape_token(name);
   Json known = gltf;  // a cache's may be wrong
-  cut_to_schema(camera_schema(), known);
+  drop_unknown(camera_schema(), known);
   check_against_schema(camera_schema(), known, document, document.file, pointer);
   Camera camera = blank_camera(shown_name, width, height);
   camera.node = node;

@@ -44,7 +44,7 @@ SurfaceOptics metallic_roughness_optics(const Material& m) {
   // An ior of 0, which rays take for 1, and a specular colour above 1 reflect where the ior says that nothing is.
   const Color tint = m.specular_color;
   const bool is_bright = m.ior < 1 || std::max({tint.x, tint.y, tint.z}) > 1;
-  optics.dielectric_cut = optics.refracts && !has_metal && !has_film && !is_bright;
+  optics.counts_in_cutoff = optics.refracts && !has_metal && !has_film && !is_bright;
   return optics;
 }
 

@@ -18,7 +18,7 @@ struct SurfaceOptics {
   bool bent = false;            // refracts by Snell's law with `ior`
   bool transparent = false;     // a straight ray weighted by 1 - coverage
   bool volume = false;          // Beer attenuation on the inside
-  bool dielectric_cut = false;  // the Fresnel terms of its branches count towards the cut-off
+  bool counts_in_cutoff = false;  // the Fresnel terms of its branches count towards the cut-off
   bool passes_light = false;    // shadow segments are tinted, not blocked
   bool cut_out = false;         // alpha MASK: holes in visibility
   bool culls_back = false;      // single-sided: no ray meets its back faces

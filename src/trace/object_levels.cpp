@@ -1,5 +1,7 @@
 #include "trace/object_levels.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace relook {
@@ -22,11 +24,19 @@ void ObjectLevels::go_on(const RayScene& scene, std::span<const ObjectId> change
     by_object_ = std::move(none_built);
     objects_ = scene_.size();
     levels_.clear();
-    return;
+  } else {
+    drop(changed);
   }
+  tracer_.drop_unused();
+}
+
+void ObjectLevels::drop(std::span<const ObjectId> changed) {
+  std::vector<const Tracer::TopLevel*> gone;
   for (const ObjectId id : changed)
-    if (const Tracer::TopLevel* old = by_object_[id.index()].exchange(nullptr))
-      std::erase_if(levels_, [&](const Built& built) { return built.level.get() == old; });
+    if (const Tracer::TopLevel* old = by_object_[id.index()].exchange(nullptr)) gone.push_back(old);
+  if (gone.empty()) return;
+  std::ranges::sort(gone);
+  std::erase_if(levels_, [&](const Built& built) { return std::ranges::binary_search(gone, built.level.get()); });
 }
 
 const Tracer::TopLevel& ObjectLevels::of(ObjectId id) const {

@@ -28,6 +28,8 @@ class ObjectLevels {
     std::unique_ptr<const Tracer::TopLevel> level;
   };
 
+  void drop(std::span<const ObjectId> changed);
+
   RayScene scene_;
   mutable std::mutex mutex_;  // of everything below
   mutable Tracer tracer_;

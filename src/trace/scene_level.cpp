@@ -13,6 +13,7 @@ void SceneLevel::note_changed(std::span<const ObjectId> objects) {
 }
 
 const Tracer::TopLevel& SceneLevel::current(const RayScene& scene, std::span<const ObjectId> absent) {
+  tracer_.drop_unused();
   // A level on top that holds much of the scene would slow every ray down.
   const std::size_t most = std::max<std::size_t>(512, scene.size() / 16);
   if (!base_ || changed_.size() > most) {

@@ -217,11 +217,6 @@ struct Tracer::Impl {
 
   Impl(bool counts, MemoryMonitor monitor) : device(std::move(monitor)), count_blockers(counts) {}
 
-  /// Drops the bottom levels of meshes that no object uses any more.
-  void drop_unused() {
-    std::erase_if(bottom_levels, [](auto& entry) { return entry.second.mesh.expired(); });
-  }
-
   /// `reports_crossings`: shadow segments ask collect_crossings() at each hit; otherwise the first hit blocks them.
   RTCScene bottom_level(const std::shared_ptr<const Mesh>& mesh, bool reports_crossings) {
     const std::pair key(mesh.get(), reports_crossings);
@@ -273,7 +268,6 @@ struct Tracer::Impl {
   }
 
   Layer build(std::span<const Placed> objects) {
-    drop_unused();
     Layer layer;
     for (const Placed& placed : objects)
       if (placed.object->alive && !placed.object->mesh->triangles.empty()) layer.placed.push_back(placed);
@@ -304,6 +298,10 @@ bool Tracer::TopLevel::empty() const { return !impl_ || (!impl_->meets_base() &&
 Tracer::Tracer(bool count_blockers, MemoryMonitor monitor)
     : impl_(std::make_unique<Impl>(count_blockers, std::move(monitor))) {}
 Tracer::~Tracer() = default;
+
+void Tracer::drop_unused() {
+  std::erase_if(impl_->bottom_levels, [](auto& entry) { return entry.second.mesh.expired(); });
+}
 
 Tracer::TopLevel Tracer::build(std::span<const Placed> objects) {
   TopLevel level;

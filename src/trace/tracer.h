@@ -82,10 +82,13 @@ class Tracer {
   Tracer& operator=(const Tracer&) = delete;
 
   /// Objects that are not alive are left out. A change of an object's geometry or of what its optics let through needs
-  /// a new top level, or replace(). Bottom levels are made once per mesh and kept while an object uses them. Where
+  /// a new top level, or replace(). Bottom levels are made once per mesh and kept until drop_unused(). Where
   /// memory is short, throws std::bad_alloc, ResourceError, or what the monitor throws; nothing half built is kept.
   [[nodiscard]] TopLevel build(std::span<const Placed> objects);
   [[nodiscard]] TopLevel build(const RayScene& scene);
+
+  /// Drops the bottom levels of meshes that no object uses any more: once an edit, since all of them are looked at.
+  void drop_unused();
 
   /// Makes `level` stand for its base, the objects it was built over, without `hidden`, plus `added`: only the small
   /// top level over `added` is built. Not cumulative: each call replaces what earlier calls hid and added. Results

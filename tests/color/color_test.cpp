@@ -19,8 +19,6 @@ TEST(PortableMath, AgreesWithTheStandardLibrary) {
     EXPECT_NEAR(portable_asin_turns(x / 75), std::asin(double{x / 75}) / (2 * 3.14159265358979), 1e-5);
     const float positive = std::exp(x * 0.5F);
     EXPECT_NEAR(portable_log2(positive), std::log2(double{positive}), 1e-6 * (1 + std::fabs(std::log2(positive))));
-    EXPECT_NEAR(portable_pow(positive, 0.7F), std::pow(double{positive}, 0.7F),
-                2e-5 * std::pow(double{positive}, 0.7F));
     for (int j = -20; j <= 20; ++j) {
       const float y = static_cast<float>(j) * 0.7F;
       EXPECT_NEAR(portable_atan2_turns(y, x), std::atan2(double{y}, double{x}) / (2 * 3.14159265358979), 1e-6);
@@ -29,8 +27,6 @@ TEST(PortableMath, AgreesWithTheStandardLibrary) {
 }
 
 TEST(PortableMath, EdgesOfTheDomain) {
-  EXPECT_EQ(portable_pow(0, 0), 1);
-  EXPECT_EQ(portable_pow(0, 2), 0);
   EXPECT_EQ(portable_exp2(-1000), 0);
   EXPECT_TRUE(std::isfinite(portable_exp2(1000)));
   EXPECT_EQ(portable_log2(0), -127);

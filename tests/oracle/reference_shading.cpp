@@ -218,7 +218,7 @@ Vec ReferenceTracer::metallic_roughness_of(int channel, const Surface& s, const 
     color += color_of(scene_.ambient) * s.occlusion *
              (s.base * (diffuse * positive(1 - largest(fd(weight, nv)))) + fresnel(weight, nv) * (1 - fade));
   if (s.optics.reflects) {
-    const Answer answer = spawn(s, ray, reflected(s, s.n), s.optics.dielectric_cut ? most : 1);
+    const Answer answer = spawn(s, ray, reflected(s, s.n), s.optics.counts_in_cutoff ? most : 1);
     color += fresnel(weight, nv) * fade * beer(s, s.inside, answer);
   }
   if (s.optics.refracts) {
@@ -226,7 +226,7 @@ Vec ReferenceTracer::metallic_roughness_of(int channel, const Surface& s, const 
     if (!s.optics.bent || bent) {
       Ray parted = ray;
       if (s.optics.dispersion > 0) parted.channel = channel;
-      const Answer answer = spawn(s, parted, s.optics.bent ? *bent : -s.view, s.optics.dielectric_cut ? 1 - exact : 1);
+      const Answer answer = spawn(s, parted, s.optics.bent ? *bent : -s.view, s.optics.counts_in_cutoff ? 1 - exact : 1);
       const Vec filter = s.optics.volume && s.inside ? Vec(1, 1, 1) : s.base;
       color += filter * (dielectric * s.transmission * positive(1 - largest(fd(weight, nv)))) * beer(s, !s.inside, answer);
     }

@@ -154,7 +154,6 @@ class Residency {
 
   /// What has happened since the last call.
   [[nodiscard]] PieceCounts take_counts();
-  [[nodiscard]] std::uint64_t spilled_bytes() const { return spill_ ? spill_->bytes() : 0; }
   /// The number of changes so far.
   [[nodiscard]] std::uint64_t change() const { return change_; }
   /// Something outside of Residency that could leave memory is used: for the access log. `number`: which of its kind.

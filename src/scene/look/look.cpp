@@ -102,7 +102,7 @@ void give_weights(const LookDocument& document, Json& node) {
 /// Copies one glTF item into the look document under its name.
 void add_entity(LookDocument& document, Section section, std::size_t index, Json value) {
   const std::string& name = document.order[static_cast<std::size_t>(section)][index];
-  cut_to_schema(schema_of(section), value);
+  drop_unknown(schema_of(section), value);
   if (value.is_object()) value.erase("name");
   name_indices(document, section, value);
   if (section == Section::images) set_relook_extra(value, "content", name);
@@ -144,7 +144,7 @@ void move_assets(ImportedGltf& imported, LookDocument& document) {
 Json active_scene(const Json& gltf) {
   const Json& scenes = member_or_empty(gltf, "scenes");
   Json scene = scenes.empty() ? Json::object() : scenes.at(gltf.value("scene", std::size_t{0}));
-  cut_to_schema(scene_schema(), scene);
+  drop_unknown(scene_schema(), scene);
   return scene;
 }
 

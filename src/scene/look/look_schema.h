@@ -81,7 +81,7 @@ inline constexpr double kOwnCeiling = 1e6;
 [[nodiscard]] std::string range_fault(const SchemaField& field, const Json& x);
 
 /// Removes, at every level, the keys that the schema does not know. Values of a wrong type stay.
-void cut_to_schema(const Schema& schema, Json& value);
+void drop_unknown(const Schema& schema, Json& value);
 /// Adds the defaults that are missing. Values of a wrong type stay.
 void fill_from_schema(const Schema& schema, Json& value);
 /// Calls `visit` with every name (or glTF index) that the value refers to.

@@ -247,7 +247,7 @@ std::string_view type_noun(const Json& value) {
   return "null";
 }
 
-void cut_to_schema(const Schema& schema, Json& value) {
+void drop_unknown(const Schema& schema, Json& value) {
   if (!value.is_object()) return;
   for (auto member = value.begin(); member != value.end();) {
     const SchemaField* field = find_field(schema, member.key());
@@ -256,9 +256,9 @@ void cut_to_schema(const Schema& schema, Json& value) {
       member = value.erase(member);
       continue;
     }
-    if (field->kind == FieldKind::object) cut_to_schema(*field->inner, *member);
+    if (field->kind == FieldKind::object) drop_unknown(*field->inner, *member);
     if (field->kind == FieldKind::list && member->is_array())
-      for (Json& item : *member) cut_to_schema(*field->inner, item);
+      for (Json& item : *member) drop_unknown(*field->inner, item);
     ++member;
   }
 }

@@ -105,7 +105,7 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
     return optics.refracts ? dielectric_reflectance(std::fmin(std::fmax(cosine, flat_cosine), 1.0F), eta) : 1.0F;
   };
   const float own_eta = eta_of(node.ray.channel), reflectance = reflectance_of(own_eta);
-  const float counted = optics.dielectric_cut ? 1.0F : 0.0F;
+  const float counted = optics.counts_in_cutoff ? 1.0F : 0.0F;
   const auto factor = [&](float term) { return 1.0F - counted + counted * term; };
 
   if (optics.reflects) {
