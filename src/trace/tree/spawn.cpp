@@ -93,7 +93,7 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
   const Material& material = *object.material;
   const Direction d = node.ray.direction;
   const Normal n = normal_of_slot(node, object, Slot::normal, material.normal_scale);
-  const float cosine = std::fmax(-d.dot(n), 1e-4F);
+  const float cosine = std::fmax(-d.dot(n), kLeastCosine);
   const bool parts = optics.dispersion > 0 && node.ray.channel == Channel::all;
   const auto eta_of = [&](Channel channel) {
     const float ior = channel_ior(optics, channel);
@@ -117,14 +117,13 @@ Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_de
   if (optics.coat_reflects && !node.point.inside) {
     const Normal coat = normal_of_slot(node, object, Slot::clearcoat_normal, material.clearcoat_normal_scale);
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
-                coat_term(std::fmin(std::fmax(-d.dot(coat), 1e-4F), 1.0F)));
+                coat_term(std::fmin(std::fmax(-d.dot(coat), kLeastCosine), 1.0F)));
   }
   const auto refract = [&](Branch branch, float eta, float passed) {
     if (!optics.bent) return spawner.add_straight(branch, passed);
-    const auto sin2_behind = [&](float c) { return (1.0F - c * c) / (eta * eta); };
-    const bool is_flat = flat_cosine > cosine && sin2_behind(std::fmin(cosine, 1.0F)) >= 1.0F;
+    const bool is_flat = flat_cosine > cosine && sin2_behind(std::fmin(cosine, 1.0F), eta) >= 1.0F;
     const float c = std::fmin(is_flat ? flat_cosine : cosine, 1.0F);
-    const float sin2 = sin2_behind(c);
+    const float sin2 = sin2_behind(c, eta);
     if (sin2 >= 1.0F) return;
     const Normal& towards = is_flat ? node.point.geometric : n;
     const Direction bent = d * (1.0F / eta) + towards * (c / eta - std::sqrt(1.0F - sin2));
