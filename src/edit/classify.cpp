@@ -38,14 +38,18 @@ ChangeClass class_of(const Material& before, const Material& after, const Mesh& 
   return class_of(effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh)));
 }
 
-/// The strongest class over all meshes that show the material. Optics depend on a mesh through its smallest alpha
-/// alone, and steadily: if both extremes agree there is no need to look for the meshes.
-ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
-  const Material& after = scene.material(change.id);
+/// Has a material the same optics whatever mesh shows it? They depend on a mesh through its smallest alpha alone, and
+/// steadily: if both extremes agree, all meshes do.
+bool is_alike_on_all(const Material& material) {
   Mesh solid, clear;
   clear.min_alpha = 0;
-  const ChangeClass found = class_of(change.before, after, solid);
-  if (found == class_of(change.before, after, clear)) return found;
+  return surface_optics(material, solid) == surface_optics(material, clear);
+}
+
+/// The strongest class over all meshes that show the material.
+ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
+  const Material& after = scene.material(change.id);
+  if (is_alike_on_all(change.before) && is_alike_on_all(after)) return class_of(change.before, after, Mesh());
   ChangeClass strongest = ChangeClass::color;
   for (MeshId mesh : meshes_with(scene, change.id))
     strongest = std::max(strongest, class_of(change.before, after, scene.mesh(mesh)));

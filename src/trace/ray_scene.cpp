@@ -1,6 +1,7 @@
 #include "trace/ray_scene.h"
 
 #include <algorithm>
+#include <map>
 
 namespace relook {
 namespace {
@@ -8,8 +9,7 @@ namespace {
 /// The users of materials as they are to be; those of few materials change.
 class UserLists {
  public:
-  UserLists(const SharedTable<std::vector<ObjectId>>& before, std::size_t materials)
-      : before_(before), changed_(materials) {}
+  explicit UserLists(const SharedTable<std::vector<ObjectId>>& before) : before_(before) {}
 
   void add(MaterialId material, ObjectId object) {
     std::vector<ObjectId>& users = list(material);
@@ -19,26 +19,24 @@ class UserLists {
     std::vector<ObjectId>& users = list(material);
     users.erase(std::ranges::lower_bound(users, object));
   }
-  void write(SharedTable<std::vector<ObjectId>>& table) && {
-    for (std::size_t i = 0; i < changed_.size(); ++i) {
-      if (i >= table.size())
-        table.push_back(changed_[i] ? std::move(changed_[i]) : std::make_shared<std::vector<ObjectId>>());
-      else if (changed_[i])
-        table.replace(i, std::move(changed_[i]));
-    }
+  /// `materials`: how many there are now.
+  void write(SharedTable<std::vector<ObjectId>>& table, std::size_t materials) && {
+    while (table.size() < materials) table.push_back(std::make_shared<std::vector<ObjectId>>());
+    for (auto& [material, users] : changed_) table.replace(material, std::move(users));
   }
 
  private:
   std::vector<ObjectId>& list(MaterialId material) {
     const std::size_t i = material.index();
-    if (!changed_[i])
-      changed_[i] = i < before_.size() ? std::make_shared<std::vector<ObjectId>>(before_[i])
-                                       : std::make_shared<std::vector<ObjectId>>();
-    return *changed_[i];
+    std::shared_ptr<std::vector<ObjectId>>& users = changed_[i];
+    if (!users)
+      users = i < before_.size() ? std::make_shared<std::vector<ObjectId>>(before_[i])
+                                 : std::make_shared<std::vector<ObjectId>>();
+    return *users;
   }
 
   const SharedTable<std::vector<ObjectId>>& before_;
-  std::vector<std::shared_ptr<std::vector<ObjectId>>> changed_;  // by MaterialId; null: as before
+  std::map<std::size_t, std::shared_ptr<std::vector<ObjectId>>> changed_;  // by MaterialId
 };
 
 bool same_place(const RayLight& a, const Light& b) {
@@ -84,7 +82,7 @@ void RayScene::apply(Tables& tables, const Scene& scene, const SceneDelta& delta
 
 void RayScene::apply_to_objects(Tables& tables, const Scene& scene, const SceneDelta& delta) {
   RayObjectMaker& maker = *tables.maker;
-  UserLists users(tables.users, scene.materials.size());
+  UserLists users(tables.users);
   const auto remade = [&](const Object& object) {
     return std::make_shared<const RayObject>(
         maker.make(scene, object, tables.materials.share(object.material.index())));
@@ -102,7 +100,7 @@ void RayScene::apply_to_objects(Tables& tables, const Scene& scene, const SceneD
     users.remove(before, change.id);
     users.add(now, change.id);
   }
-  std::move(users).write(tables.users);
+  std::move(users).write(tables.users, scene.materials.size());
   for (const auto& change : delta.materials) {
     const std::shared_ptr<const Material>& material = tables.materials.share(change.id.index());
     for (const ObjectId user : tables.users[change.id.index()]) {

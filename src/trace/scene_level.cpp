@@ -20,14 +20,19 @@ const Tracer::TopLevel& SceneLevel::current(const RayScene& scene, std::span<con
     level_ = tracer_.build(scene);
     changed_.clear();
     base_ = scene;
+    tracer_.drop_unused();  // what only the level before was over
   }
   std::vector<ObjectId> hidden;
   std::ranges::set_union(changed_, absent, std::back_inserter(hidden));
   std::vector<Tracer::Placed> on_top;
+  std::vector<std::shared_ptr<const RayObject>> kept;
   for (ObjectId id : changed_)
-    if (!std::ranges::binary_search(absent, id)) on_top.push_back({id, &scene.object(id)});
+    if (!std::ranges::binary_search(absent, id)) {
+      on_top.push_back({id, &scene.object(id)});
+      kept.push_back(scene.share(id));
+    }
   tracer_.replace(level_, hidden, on_top);
-  on_top_ = scene;
+  on_top_ = std::move(kept);
   return level_;
 }
 

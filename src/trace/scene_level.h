@@ -1,6 +1,7 @@
 // The top level over the whole scene through a series of edits: what an edit moves is hidden in the level built before
 // and put into a small one on top of it, so that the price of an edit follows from the edit.
 #pragma once
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,7 +22,8 @@ class SceneLevel {
 
  private:
   Tracer tracer_;
-  std::optional<RayScene> base_, on_top_;  // the states whose objects the level points to; none: not built
+  std::optional<RayScene> base_;  // the state over which the level was built; none: not built
+  std::vector<std::shared_ptr<const RayObject>> on_top_;  // what the small level on top of it points to
   Tracer::TopLevel level_;
   std::vector<ObjectId> changed_;  // since the level was built, increasing
 };

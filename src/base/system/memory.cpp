@@ -5,12 +5,21 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 
 namespace relook {
 
 std::uint64_t resident_set_bytes() {
-  static const int file = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);  // stays open: opening takes longest
+  static std::atomic<int> kept = -1;  // stays open: opening takes longest
+  int file = kept;
+  if (file < 0) {
+    const int opened = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
+    if (kept.compare_exchange_strong(file, opened))
+      file = opened;
+    else if (opened >= 0)
+      ::close(opened);  // another thread's is kept
+  }
   std::array<char, 128> text{};
   if (file < 0 || ::pread(file, text.data(), text.size() - 1, 0) <= 0) return 0;
   char* rest = nullptr;
