@@ -192,5 +192,30 @@ TEST(Reasons, name_the_entity_and_both_values) {
             "ambient light: (0, 0, 0) -> (1, 0, 0)");
 }
 
+/// Coverage above 1 in a float texture: neither a mesh without alpha nor one with alpha 0 tells what its own mesh shows.
+TEST(Table1, coverage_is_that_of_the_mesh_which_shows_the_material) {
+  Scene scene;
+  auto assets = std::make_shared<Assets>();
+  assets->meshes.emplace_back();
+  assets->meshes.back().min_alpha = 0.8F;
+  scene.assets = assets;
+  auto bright = std::make_shared<TexturePyramid>();
+  bright->smallest = bright->largest = Rgba(1, 1, 1, 1.5F);
+  Material veil;
+  veil.name = "Veil";
+  veil.alpha_mode = AlphaMode::blend;
+  veil.slot(Slot::base_color).kind = TextureKind::image;
+  veil.slot(Slot::base_color).pyramid = bright;
+  SceneDelta delta;
+  delta.materials.push_back({MaterialId(0), veil});
+  veil.base_color.a = 0.8F;  // 1.5 * 0.8 * 0.8 < 1 < 1.5 * 0.8
+  scene.materials.push_back(veil);
+  Object object;
+  object.mesh = MeshId(0);
+  object.material = MaterialId(0);
+  scene.objects.push_back(object);
+  EXPECT_EQ(change_class_name(classify(scene, delta).change), "optical");
+}
+
 }  // namespace
 }  // namespace relook
