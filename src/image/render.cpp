@@ -169,8 +169,8 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
   parallel_for(tiles.size(), [&](std::size_t i) {
     const TileRect rect = tile_rect(tiles[i], image.frame.width, image.frame.height);
     std::vector<Rgba> colors;
-    const auto renderer =
-        renderers.take([&] { return std::make_unique<TileRenderer>(grow, color_scene, image.view, programs, tunnels); });
+    const auto renderer = renderers.take(
+        [&] { return std::make_unique<TileRenderer>(grow, color_scene, image.view, programs, tunnels); });
     if (!levels.empty()) begin_tunnels(records[i], TileGrid(levels[tiles[i]]), *tunnels);
     renderer->render(rect, colors, keep ? &records[i] : nullptr, counters[i]);
     if (!levels.empty()) end_tunnels(records[i]);

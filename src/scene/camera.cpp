@@ -137,7 +137,8 @@ Camera placed_camera(const LookDocument& document, std::string_view shown_name, 
   double half_width = half_height * width / height;
   if (camera.orthographic && lens.contains("xmag")) half_width = std::abs(number("xmag"));
   if (!camera.orthographic && lens.contains("aspectRatio")) half_width = half_height * number("aspectRatio");
-  if (!(half_width > 0 && half_height > 0)) throw InputError(document.file, pointer, "the camera sees nothing: its angle or size is 0");
+  if (!(half_width > 0 && half_height > 0))
+    throw InputError(document.file, pointer, "the camera sees nothing: its angle or size is 0");
   show_whole(camera, half_width, half_height);
   if (lens.contains("znear")) camera.near = static_cast<float>(number("znear"));
   if (lens.contains("zfar")) camera.far = static_cast<float>(number("zfar"));

@@ -46,7 +46,8 @@ const Tracer::TopLevel& ObjectLevels::of(ObjectId id) const {
   if (const Tracer::TopLevel* level = place.load(std::memory_order_relaxed)) return *level;
   run_isolated([&] {
     const Tracer::Placed placed{id, &scene_.object(id)};
-    levels_.push_back({scene_.share(id), std::make_unique<const Tracer::TopLevel>(tracer_.build(std::span(&placed, 1)))});
+    levels_.push_back(
+        {scene_.share(id), std::make_unique<const Tracer::TopLevel>(tracer_.build(std::span(&placed, 1)))});
   });
   place.store(levels_.back().level.get(), std::memory_order_release);
   return *levels_.back().level;

@@ -67,7 +67,9 @@ void flatten(Mesh& mesh, const Transform& along) {
 Mesh shaped(const Mesh& mesh, const Object& object, const Transform* sheet) {
   Mesh bent = object.deformation ? deformed(mesh, *object.deformation) : Mesh();
   const Mesh& shape = object.deformation ? bent : mesh;
-  Mesh result = object.displacement ? displaced(shape, *object.displacement) : object.deformation ? std::move(bent) : mesh;
+  Mesh result = object.displacement  ? displaced(shape, *object.displacement)
+                : object.deformation ? std::move(bent)
+                                     : mesh;
   if (sheet != nullptr) flatten(result, *sheet);
   return result;
 }

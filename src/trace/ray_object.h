@@ -1,5 +1,5 @@
-// An object ready for rays: what intersection, surface points and spawning need of it, derived from Scene; and its maker,
-// which derives each shape once. Called by RayScene.
+// An object ready for rays: what intersection, surface points and spawning need of it, derived from Scene; and its
+// maker, which derives each shape once. Called by RayScene.
 #pragma once
 #include <array>
 #include <map>

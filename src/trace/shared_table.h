@@ -17,7 +17,9 @@ class SharedTable {
   /// By index, to be read without this table's own indirection. Valid until the table changes.
   [[nodiscard]] const T* const* entries() const { return entries_.data(); }
   /// An entry that outlives the table.
-  [[nodiscard]] const std::shared_ptr<const T>& share(std::size_t i) const { return (*blocks_[i / kBlock])[i % kBlock]; }
+  [[nodiscard]] const std::shared_ptr<const T>& share(std::size_t i) const {
+    return (*blocks_[i / kBlock])[i % kBlock];
+  }
 
   void push_back(std::shared_ptr<const T> entry) {
     if (entries_.size() % kBlock == 0) blocks_.push_back(std::make_shared<Block>());

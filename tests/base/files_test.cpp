@@ -79,7 +79,9 @@ TEST_F(Files, contained_paths_stay_inside) {
   fs::create_symlink("../secret", folder_ / "inner/out");
   fs::create_symlink("here", folder_ / "inner/link");
   fs::create_directory_symlink("..", folder_ / "inner/up");
-  const auto resolve = [&](std::string_view uri) { return contained_path(folder_ / "inner", {}, uri, "scene", "/where"); };
+  const auto resolve = [&](std::string_view uri) {
+    return contained_path(folder_ / "inner", {}, uri, "scene", "/where");
+  };
   EXPECT_EQ(text_of(read_file(resolve("here"))), "h");
   EXPECT_EQ(text_of(read_file(resolve("./here"))), "h");
   EXPECT_EQ(text_of(read_file(resolve("link"))), "h") << "a link that stays inside";

@@ -225,7 +225,8 @@ TEST_F(SandboxedProgram, reads_and_writes_whatever_way_files_are_named) {
       "$R inspect scene/spheres.gltf --look > look.txt",
       "$R inspect moved/j.json --scene links/c --quiet",
       "$R inspect moved/run && $R inspect links/c",
-      "t=$(mktemp -d /dev/shm/relook.XXXXXX) && cp -r scene paint.png j.json $t && $R render $t/scene/spheres.gltf -o f.exr $S"
+      "t=$(mktemp -d /dev/shm/relook.XXXXXX) && cp -r scene paint.png j.json $t && $R render $t/scene/spheres.gltf -o "
+      "f.exr $S"
       " && $R replay c $t/j.json -o runs/shm --quiet; r=$?; rm -rf $t; exit $r",
       "$R replay c j.json other.json -o runs/two --quiet && mkdir -p a1 b1 && mv runs/two/other/frames a1/F &&"
       " ln -s $PWD/a1/F runs/two/other/frames && mv runs/two/other b1/O && ln -s $PWD/b1/O runs/two/other &&"

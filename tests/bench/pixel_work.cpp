@@ -80,7 +80,8 @@ double time_pixel_work(const Scene& scene, const ViewOptions& view, std::span<co
   return fastest(3, [&] {
     Pool<SampleRenderer> renderers;
     parallel_for(tiles.size(), [&](std::size_t i) {
-      const auto renderer = renderers.take([&] { return std::make_unique<SampleRenderer>(grow, rays, view, programs); });
+      const auto renderer =
+          renderers.take([&] { return std::make_unique<SampleRenderer>(grow, rays, view, programs); });
       renderer->render(tiles[i]);
     });
   });

@@ -49,7 +49,8 @@ TEST(Lobes, WithAWeightOfZeroTheRestCountsForNothing) {
 Frame brushed(double strength, double rotation) {
   Json edit = settings("Matte", "KHR_materials_anisotropy",
                        {{"anisotropyStrength", strength}, {"anisotropyRotation", rotation}});
-  edit.push_back({{"op", "replace"}, {"path", "/materials/Matte/pbrMetallicRoughness/roughnessFactor"}, {"value", 0.3}});
+  edit.push_back(
+      {{"op", "replace"}, {"path", "/materials/Matte/pbrMetallicRoughness/roughnessFactor"}, {"value", 0.3}});
   return frame_with(TestScene::spheres, edit, 1);
 }
 double largest_difference(const Frame& a, const Frame& b) {

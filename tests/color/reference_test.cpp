@@ -121,8 +121,9 @@ SceneState brushed_scene() {
   const int colors = scene.texture("Colors", scene.image("ColorChecks", checks(TexelFormat::srgb8)));
   const int values = scene.texture("Values", scene.image("ValueChecks", checks(TexelFormat::linear8)));
   const auto surface = [&](float metallic, float roughness) {
-    return Json{{"pbrMetallicRoughness",
-                 {{"baseColorTexture", {{"index", colors}}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
+    return Json{
+        {"pbrMetallicRoughness",
+         {{"baseColorTexture", {{"index", colors}}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
   };
   const auto turned = [](int texture) {
     Json info = {{"index", texture}};

@@ -95,7 +95,8 @@ double furnace(const Json& material, double view_degrees) {
 }
 
 TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
-  Json dielectric = lambert(1), coated = lambert(1), velvet = lambert(1), rough_metal = metal(0.5), rougher = metal(1), brushed = metal(0.5);
+  Json dielectric = lambert(1), coated = lambert(1), velvet = lambert(1), rough_metal = metal(0.5), rougher = metal(1),
+       brushed = metal(0.5);
   dielectric["extensions"].erase("KHR_materials_specular");
   dielectric["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
   coated["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 1}, {"clearcoatRoughnessFactor", 0.5}};

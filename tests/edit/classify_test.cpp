@@ -192,7 +192,8 @@ TEST(Reasons, name_the_entity_and_both_values) {
             "ambient light: (0, 0, 0) -> (1, 0, 0)");
 }
 
-/// Coverage above 1 in a float texture: neither a mesh without alpha nor one with alpha 0 tells what its own mesh shows.
+/// Coverage above 1 in a float texture: neither a mesh without alpha nor one with alpha 0 tells what its own mesh
+/// shows.
 TEST(Table1, coverage_is_that_of_the_mesh_which_shows_the_material) {
   Scene scene;
   auto assets = std::make_shared<Assets>();

@@ -67,7 +67,8 @@ TEST(PatchErrors, nodes) {
   const std::string sphere = R"([{"op": "replace", "path": "/nodes/Sphere/)";
   EXPECT_EQ(refusal(sphere + R"(rotation", "value": [0, 0, 0, 0]}])"),
             "/edit/0/value: a rotation must not be the zero quaternion");
-  EXPECT_EQ(refusal(sphere + R"(translation/2", "value": 1e39}])"), "/edit/0/value: 1e+39 is above 3.4028234663852886e+38");
+  EXPECT_EQ(refusal(sphere + R"(translation/2", "value": 1e39}])"),
+            "/edit/0/value: 1e+39 is above 3.4028234663852886e+38");
   EXPECT_EQ(refusal(R"([{"op": "add", "path": "/nodes/Hand/translation", "value": [0, 0, 1]}])"),
             "/edit/0/value: a node has either a matrix or translation, rotation and scale");
   EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Hand/matrix/3", "value": 1}])"),

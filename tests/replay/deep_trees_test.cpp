@@ -1,6 +1,6 @@
-// Trees of 32 generations between facing mirrors: the branches that lead to a node are told by 28 bits, so that those of
-// deep nodes are folded into their parents' (trace/tree/touch.h). Edits above, at and below the fold give the frames and
-// the trees of a full render, whatever tunnels are built.
+// Trees of 32 generations between facing mirrors: the branches that lead to a node are told by 28 bits, so that those
+// of deep nodes are folded into their parents' (trace/tree/touch.h). Edits above, at and below the fold give the frames
+// and the trees of a full render, whatever tunnels are built.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ std::string deep_name(const testing::TestParamInfo<DeepCase>& info) {
          "_tunnels_" + std::to_string(info.param.tunnel_levels) + "_levels";
 }
 
-/// A hall of mirrors to the left and to the right, a little out of parallel; within it a dull ball, a glass ball, a veil
-/// and a lamp. Rays that see none of them go on between the mirrors to the last generation.
+/// A hall of mirrors to the left and to the right, a little out of parallel; within it a dull ball, a glass ball, a
+/// veil and a lamp. Rays that see none of them go on between the mirrors to the last generation.
 SceneState hall_of_mirrors() {
   SceneBuilder scene;
   const Json silver = {{"pbrMetallicRoughness",
@@ -67,7 +67,8 @@ std::vector<MatrixRow> hall_rows() {
       row("colour of a mirror", set("/materials/Mirror/pbrMetallicRoughness/baseColorFactor", {0.7, 0.9, 0.95, 1})),
       row("colour of what it shows", set("/materials/Matte/pbrMetallicRoughness/baseColorFactor", {0.2, 0.5, 0.9, 1})),
       row("colour of the light", set("/lights/Lamp/color", {1, 0.7, 0.4})),
-      row("tint of the glass", set("/materials/Glass/extensions/KHR_materials_volume/attenuationColor", {0.9, 0.5, 0.3})),
+      row("tint of the glass",
+          set("/materials/Glass/extensions/KHR_materials_volume/attenuationColor", {0.9, 0.5, 0.3})),
       row("coverage of the veil", set("/materials/Veil/pbrMetallicRoughness/baseColorFactor/3", 0.7)),
       row("bend what the glass shows", set("/materials/Glass/extensions/KHR_materials_ior/ior", 1.3)),
       row("a mirror is dull: no tree is deep", set("/materials/OtherMirror/pbrMetallicRoughness/roughnessFactor", 0.8)),

@@ -1,5 +1,5 @@
-// Rows of the paper's Table 1 as edits, and steps through them, each against a full render and a fresh preprocess of the
-// edited scene.
+// Rows of the paper's Table 1 as edits, and steps through them, each against a full render and a fresh preprocess of
+// the edited scene.
 #pragma once
 #include <optional>
 #include <string>
@@ -29,8 +29,8 @@ template <class... Operations>
   return {std::move(name), Json::array({std::move(operations)...})};
 }
 
-/// Steps through rows. `is_of_class`: what the class of a row must be, if anything. Frames, ray trees, tiles and counters
-/// that are not those of a full render are gtest failures.
+/// Steps through rows. `is_of_class`: what the class of a row must be, if anything. Frames, ray trees, tiles and
+/// counters that are not those of a full render are gtest failures.
 void expect_full_renders(SceneState state, const ViewOptions& view, const std::vector<MatrixRow>& rows,
                          std::optional<ChangeClass> is_of_class, const RegionOptions& regions = {});
 /// The frame has the bits of a full render, and the ray trees are those of a fresh preprocess.

@@ -185,8 +185,9 @@ TEST_F(ImportValues, framing_of_files_is_read_as_it_is_meant) {
   outside.gltf["buffers"] = gltf["buffers"];
   EXPECT_EQ(answer(outside.glb()).error, "") << "a .glb may name files";
   gltf = {{"asset", {{"version", "2.0"}}}};
-  for (const char* uri : {"data:application/octet-stream;base64,AQIDBA==", "data:application/octet-stream;BASE64,AQIDBA==",
-                          "DATA:;Base64,AQIDBA", "data:;base64,AQID%42A%3D%3D", "data:;base64,AQ\n ID\r\nBA=="}) {
+  for (const char* uri :
+       {"data:application/octet-stream;base64,AQIDBA==", "data:application/octet-stream;BASE64,AQIDBA==",
+        "DATA:;Base64,AQIDBA", "data:;base64,AQID%42A%3D%3D", "data:;base64,AQ\n ID\r\nBA=="}) {
     gltf["buffers"] = {{{"byteLength", 4}, {"uri", uri}}};
     EXPECT_EQ(answer(gltf.dump(), "inner/scene.gltf").error, "") << uri;
   }

@@ -49,7 +49,8 @@ class ImportValues : public testing::Test {
     return gltf;
   }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("relook_values_" + std::to_string(::getpid()));
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("relook_values_" + std::to_string(::getpid()));
 };
 
 }  // namespace relook

@@ -195,7 +195,8 @@ TEST(Look, only_what_stands_in_the_world_must_be_near_enough) {
   Json far{{"translation", {3e38, 0, 0}}};
   fill_defaults(Section::nodes, far);
   document.look["nodes"]["Empty"] = far;
-  Json wide{{"scale", {1e13, 1e13, 1e13}}, {"children", {"Small"}}}, small{{"scale", {1e-13, 1e-13, 1e-13}}, {"mesh", "Ball"}};
+  Json wide{{"scale", {1e13, 1e13, 1e13}}, {"children", {"Small"}}},
+      small{{"scale", {1e-13, 1e-13, 1e-13}}, {"mesh", "Ball"}};
   fill_defaults(Section::nodes, wide);
   fill_defaults(Section::nodes, small);
   document.look["nodes"]["Wide"] = wide;

@@ -72,7 +72,9 @@ inline SceneFile draco_square(const std::string& draco) {
 inline std::vector<DracoColumn> square_columns() {
   return {{7, 0, 9, 3, bytes_of_numbers(kCorners)}, {3, 3, 9, 2, bytes_of_numbers(kUvs)}};
 }
-inline std::string draco_square_data(DracoCounts counts = {}) { return draco_mesh(kIndices, 4, square_columns(), counts); }
+inline std::string draco_square_data(DracoCounts counts = {}) {
+  return draco_mesh(kIndices, 4, square_columns(), counts);
+}
 inline SceneFile draco_square() { return draco_square(draco_square_data()); }
 inline Json& draco_extension_of(SceneFile& file) { return file.primitive()["extensions"]["KHR_draco_mesh_compression"]; }
 

@@ -87,11 +87,32 @@ std::string material_text(const Material& m) {
   std::string text = m.name + " " + std::to_string(static_cast<int>(m.model)) +
                      std::to_string(static_cast<int>(m.alpha_mode)) + (m.double_sided ? "d " : "s ");
   text += bits(m.base_color.r) + bits(m.base_color.g) + bits(m.base_color.b) + bits(m.base_color.a);
-  for (float x :
-       {m.alpha_cutoff, m.metallic, m.roughness, m.normal_scale, m.occlusion_strength, m.emissive_strength, m.ior, m.dispersion,
-        m.transmission, m.thickness, m.attenuation_distance, m.specular, m.clearcoat, m.clearcoat_roughness,
-        m.clearcoat_normal_scale, m.sheen_roughness, m.anisotropy, m.anisotropy_rotation, m.iridescence, m.iridescence_ior,
-        m.iridescence_minimum, m.iridescence_maximum, m.shininess, m.reflection, m.refraction, m.transparency})
+  for (float x : {m.alpha_cutoff,
+                  m.metallic,
+                  m.roughness,
+                  m.normal_scale,
+                  m.occlusion_strength,
+                  m.emissive_strength,
+                  m.ior,
+                  m.dispersion,
+                  m.transmission,
+                  m.thickness,
+                  m.attenuation_distance,
+                  m.specular,
+                  m.clearcoat,
+                  m.clearcoat_roughness,
+                  m.clearcoat_normal_scale,
+                  m.sheen_roughness,
+                  m.anisotropy,
+                  m.anisotropy_rotation,
+                  m.iridescence,
+                  m.iridescence_ior,
+                  m.iridescence_minimum,
+                  m.iridescence_maximum,
+                  m.shininess,
+                  m.reflection,
+                  m.refraction,
+                  m.transparency})
     text += bits(x);
   for (const Color& c : {m.emissive, m.attenuation_color, m.specular_color, m.sheen_color, m.phong_ambient,
                          m.phong_diffuse, m.phong_specular})

@@ -214,7 +214,8 @@ TEST(Surfaces, what_cannot_be_seen_is_named) {
   scene.light("Torch", {{"type", "spot"}, {"spot", Json::object()}}, {{"scale", {0, 0, 0}}});
   scene.light("Bulb", {{"type", "point"}}, {{"scale", {0, 0, 0}}});
   Json textured = lambert();
-  textured["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", scene.procedural_texture("Nothing", {{"kind", "noise"}})}};
+  textured["pbrMetallicRoughness"]["baseColorTexture"] = {
+      {"index", scene.procedural_texture("Nothing", {{"kind", "noise"}})}};
   card(scene, "Page", 1, textured, {{"translation", {0, 0, -1}}});
   scene.look_at(Point(0, 0, 1), Point(0, 0, 0), 60, 8, 8);
   LookDocument document = scene.state().document();

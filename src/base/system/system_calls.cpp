@@ -26,9 +26,9 @@ constexpr std::uint32_t kLastKnownCall = 450;
 
 constexpr long kRefused[] = {
     // Other programs and processes; fork() is a clone without CLONE_THREAD where it has no call of its own.
-    SYS_execve, SYS_execveat, SYS_setpriority, SYS_ioprio_set, SYS_ptrace, SYS_process_vm_readv, SYS_process_vm_writev, SYS_process_madvise,
-    SYS_process_mrelease, SYS_kcmp, SYS_pidfd_open, SYS_pidfd_getfd, SYS_pidfd_send_signal, SYS_rt_sigqueueinfo,
-    SYS_rt_tgsigqueueinfo,
+    SYS_execve, SYS_execveat, SYS_setpriority, SYS_ioprio_set, SYS_ptrace, SYS_process_vm_readv, SYS_process_vm_writev,
+    SYS_process_madvise, SYS_process_mrelease, SYS_kcmp, SYS_pidfd_open, SYS_pidfd_getfd, SYS_pidfd_send_signal,
+    SYS_rt_sigqueueinfo, SYS_rt_tgsigqueueinfo,
 #ifdef SYS_fork
     SYS_fork, SYS_vfork,
 #endif
@@ -42,7 +42,8 @@ constexpr long kRefused[] = {
     SYS_msgctl, SYS_semget, SYS_semop, SYS_semctl, SYS_semtimedop, SYS_mq_open, SYS_mq_unlink,
     // Names, owners and modes that Landlock has no say in.
     SYS_linkat, SYS_symlinkat, SYS_mknodat, SYS_fchmodat, SYS_fchmod, SYS_fchownat, SYS_fchown, SYS_utimensat,
-    SYS_setxattr, SYS_lsetxattr, SYS_fsetxattr, SYS_removexattr, SYS_lremovexattr, SYS_fremovexattr, SYS_name_to_handle_at, SYS_open_by_handle_at, SYS_fanotify_init, SYS_fanotify_mark,
+    SYS_setxattr, SYS_lsetxattr, SYS_fsetxattr, SYS_removexattr, SYS_lremovexattr, SYS_fremovexattr,
+    SYS_name_to_handle_at, SYS_open_by_handle_at, SYS_fanotify_init, SYS_fanotify_mark,
 #ifdef SYS_link
     SYS_link, SYS_symlink, SYS_mknod, SYS_chmod, SYS_chown, SYS_lchown, SYS_utime, SYS_utimes, SYS_futimesat,
 #endif

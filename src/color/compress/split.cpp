@@ -127,7 +127,8 @@ class Splitter {
   /// The program with its columns as inputs.
   Kernel residual(const std::vector<Value>& columns) const {
     Code code = code_;
-    for (std::size_t k = 0; k < columns.size(); ++k) code[columns[k]] = {Op::column, Payload::number(static_cast<std::uint32_t>(k)), {}};
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      code[columns[k]] = {Op::column, Payload::number(static_cast<std::uint32_t>(k)), {}};
     return make_kernel(code, {program_.result.begin(), program_.result.end()});
   }
 

@@ -201,7 +201,8 @@ Mesh decode_primitive(PrimitiveSource source) {
   for (std::size_t set = 0; set < mesh.uv.size(); ++set) {
     const auto values = attribute(source, "TEXCOORD_" + std::to_string(set), {2, 2, true, false}, kAnySize);
     mesh.uv[set].reserve(values.size() / 2);
-    for (std::size_t i = 0; i < values.size(); i += 2) mesh.uv[set].emplace_back(bounded(values[i]), bounded(values[i + 1]));
+    for (std::size_t i = 0; i < values.size(); i += 2)
+      mesh.uv[set].emplace_back(bounded(values[i]), bounded(values[i + 1]));
   }
   decode_colors(source, mesh);
   decode_targets(source, mesh);

@@ -44,8 +44,8 @@ struct ColumnFormat {
 
 [[nodiscard]] std::string attribute_place(std::string_view semantic);  // "/attributes/POSITION"
 
-/// An accessor's numbers at the vertices that are used, all finite and at most `largest` in magnitude. `is_read`: whether
-/// the scene reads the column; if not, one with a wrong number is empty.
+/// An accessor's numbers at the vertices that are used, all finite and at most `largest` in magnitude. `is_read`:
+/// whether the scene reads the column; if not, one with a wrong number is empty.
 [[nodiscard]] std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& accessor,
                                            const std::string& place, const ColumnFormat& format, float largest,
                                            bool is_read);

@@ -55,7 +55,8 @@ BytesView glb_content(BytesView bytes, GltfSource& source) {
   return bytes.first(length);
 }
 
-/// Chunks must fill the counted bytes exactly: JSON first, at most one BIN, second; chunks of unknown types are skipped.
+/// Chunks must fill the counted bytes exactly: JSON first, at most one BIN, second; chunks of unknown types are
+/// skipped.
 void read_glb(BytesView file, GltfSource& source) {
   const BytesView bytes = glb_content(file, source);
   std::size_t offset = kGlbHeaderBytes;

@@ -135,9 +135,8 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera) {
                {"color", lights[i].color},
                {"intensity", lights[i].white_diffuse * std::numbers::pi}},
               {{"rotation", rotation_to(-ways[i].along)}});
-  const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)), [](const Obstacle& o) {
-                           return std::isfinite(o.distance);
-                         });
+  const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)),
+                                                          [](const Obstacle& o) { return std::isfinite(o.distance); });
   if (!is_closed) return "";
   const double extent = bounds.size().length() / 2;
   const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);

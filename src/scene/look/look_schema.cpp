@@ -190,8 +190,8 @@ const Schema& mesh_schema() {
       {name("material", Target::materials), integer("mode", 4, 0, 6), optional("extensions", extensions)}};
   static const Schema relook{{text("geometry")}};
   static const Schema extras = wrapped("relook", relook);
-  static const Schema mesh{
-      {text("name"), list("primitives", primitive), numbers("weights", -kLargest, kLargest), implied("extras", extras)}};
+  static const Schema mesh{{text("name"), list("primitives", primitive), numbers("weights", -kLargest, kLargest),
+                            implied("extras", extras)}};
   return mesh;
 }
 
@@ -218,12 +218,12 @@ const Schema& node_schema() {
   static const Schema node = [] {
     SchemaField children = names("children", Target::nodes);
     children.fallback = Json::array();
-    Schema schema{
-        {text("name"), name("mesh", Target::meshes), name("skin", Target::skins), numbers("weights", -kLargest, kLargest),
-         children, name("camera", Target::cameras), implied("extensions", extensions), optional("extras", extras),
-         reals("translation", {0.0, 0.0, 0.0}, -kHuge, kHuge),
-         reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kHuge, kHuge),
-         reals("scale", {1.0, 1.0, 1.0}, -kHuge, kHuge)}};
+    Schema schema{{text("name"), name("mesh", Target::meshes), name("skin", Target::skins),
+                   numbers("weights", -kLargest, kLargest), children, name("camera", Target::cameras),
+                   implied("extensions", extensions), optional("extras", extras),
+                   reals("translation", {0.0, 0.0, 0.0}, -kHuge, kHuge),
+                   reals("rotation", {0.0, 0.0, 0.0, 1.0}, -kHuge, kHuge),
+                   reals("scale", {1.0, 1.0, 1.0}, -kHuge, kHuge)}};
     schema.fields.push_back(
         {.key = "matrix", .kind = FieldKind::reals, .fallback = {}, .low = -kHuge, .high = kHuge, .count = 16});
     return schema;
@@ -303,7 +303,8 @@ const Schema& file_material_schema() {
 }
 
 const Schema& camera_schema() {
-  static const Schema perspective{{number("yfov", {}, kAboveZero, kBelowPi), number("aspectRatio", {}, kAboveZero, kLargest),
+  static const Schema perspective{{number("yfov", {}, kAboveZero, kBelowPi),
+                                   number("aspectRatio", {}, kAboveZero, kLargest),
                                    number("znear", {}, kAboveZero, kHuge), number("zfar", {}, kAboveZero, kHuge)}};
   static const Schema orthographic{{number("xmag", {}, -kLargest, kLargest), number("ymag", {}, -kLargest, kLargest),
                                     number("znear", {}, 0, kHuge), number("zfar", {}, kAboveZero, kHuge)}};

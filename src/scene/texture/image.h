@@ -17,7 +17,8 @@ namespace relook {
 
 /// What a message says of an image of KHR_texture_basisu.
 inline constexpr std::string_view kNoKtxImages =
-    "KTX2 images (KHR_texture_basisu) are not supported; `gltf-transform ktxdecompress IN.glb OUT.glb` makes PNG images "
+    "KTX2 images (KHR_texture_basisu) are not supported; `gltf-transform ktxdecompress IN.glb OUT.glb` makes PNG "
+    "images "
     "of them";
 
 /// Largest image accepted, in pixels.

@@ -69,7 +69,9 @@ class LightStates {
     return static_cast<ShadowState>(word_ >> (2 * place) & 3U);
   }
   /// Requires: the state there is the first one so far.
-  constexpr void set(std::size_t place, ShadowState state) { word_ |= static_cast<std::uint32_t>(state) << (2 * place); }
+  constexpr void set(std::size_t place, ShadowState state) {
+    word_ |= static_cast<std::uint32_t>(state) << (2 * place);
+  }
 
  private:
   std::uint32_t word_;

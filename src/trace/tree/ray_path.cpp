@@ -42,7 +42,8 @@ PathTable::Place& PathTable::place_of(std::span<const std::uint32_t> path, std::
 
 void PathTable::reserve(std::size_t paths) {
   if (2 * paths <= index_.size()) return;
-  const std::vector<Place> old = std::exchange(index_, std::vector<Place>(std::bit_ceil(std::max<std::size_t>(2 * paths, 16))));
+  const std::vector<Place> old =
+      std::exchange(index_, std::vector<Place>(std::bit_ceil(std::max<std::size_t>(2 * paths, 16))));
   const std::size_t mask = index_.size() - 1;
   for (const Place& place : old) {
     if (place.id.is_none()) continue;

@@ -24,8 +24,8 @@ struct Hit {
   return static_cast<std::uint32_t>(hits);
 }
 
-/// The ray trees of one tile, whose samples are numbered as base/tiles.h says. Hits of a sample: nodes in preorder, each
-/// followed by the filters of its lights, as in the path.
+/// The ray trees of one tile, whose samples are numbered as base/tiles.h says. Hits of a sample: nodes in preorder,
+/// each followed by the filters of its lights, as in the path.
 struct TileTrees {
   std::vector<PathId> paths;             // [samples]
   std::vector<std::uint32_t> first_hit;  // [samples + 1] into hits; empty, as hits: not kept

@@ -1,5 +1,5 @@
-// Which rays a hit sends on: a node of a ray tree, its object and the options in; its spawned rays, and what the Fresnel
-// cut-off held back, out.
+// Which rays a hit sends on: a node of a ray tree, its object and the options in; its spawned rays, and what the
+// Fresnel cut-off held back, out.
 #pragma once
 #include <array>
 #include <cstdint>

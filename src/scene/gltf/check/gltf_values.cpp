@@ -185,7 +185,8 @@ void check_idle_cone(Json& light, const std::string& pointer, std::string_view f
                      std::vector<std::string>& warnings) {
   if (light.value("type", Json()) == "spot" || !light.contains("spot")) return;
   Json cone = {{"type", "point"}, {"spot", light["spot"]}};
-  if (!ValueCheck(false, file, warnings).object(schema_of(Section::lights), cone, {nullptr, pointer})) light.erase("spot");
+  if (!ValueCheck(false, file, warnings).object(schema_of(Section::lights), cone, {nullptr, pointer}))
+    light.erase("spot");
 }
 
 /// What no table says of a node's transform. Rounding errors of a matrix pass; its fourth row then is 0 0 0 1.
@@ -243,8 +244,8 @@ void check_section(Json& gltf, Section section, const GltfUse& use, std::string_
                    std::vector<std::string>& warnings) {
   Json* const things = section == Section::lights ? lights_of(gltf) : find_array(gltf, section_name(section));
   if (things == nullptr) return;
-  const std::string prefix =
-      section == Section::lights ? "/extensions/KHR_lights_punctual/lights/" : "/" + std::string(section_name(section)) + "/";
+  const std::string prefix = section == Section::lights ? "/extensions/KHR_lights_punctual/lights/"
+                                                        : "/" + std::string(section_name(section)) + "/";
   for (std::size_t i = 0; i < things->size(); ++i) {
     const std::string pointer = prefix + std::to_string(i);
     Json& thing = (*things)[i];

@@ -159,7 +159,8 @@ void unpack_meshopt(const JsonView& root, GltfModel& model, const std::vector<Re
       unpack_view(*place, i, model, warnings, share);
     } catch (const InputError&) {
       if (is_needed[i]) throw;
-      tolerate(place->file(), place->pointer(), "the data cannot be read; the scene does not use it: ignored", warnings);
+      tolerate(place->file(), place->pointer(), "the data cannot be read; the scene does not use it: ignored",
+               warnings);
       model.views[i].buffer = model.buffers.size();
       model.buffers.emplace_back();
     }
