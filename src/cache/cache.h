@@ -14,7 +14,7 @@
 #include "region/tile_tunnels.h"
 #include "region/tunnel_shape.h"
 #include "scene/look/look.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 

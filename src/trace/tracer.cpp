@@ -17,12 +17,12 @@ namespace relook {
 
 struct Tracer::TopLevel::Impl {
   /// Objects under one Embree scene.
-  struct Layer {
+  struct Instances {
     SceneHandle scene;                                // null: no objects
     std::vector<Placed> placed;                       // by instance id; object null: hidden
     std::vector<std::shared_ptr<const Mesh>> meshes;  // keeps what the bottom levels point into
   };
-  Layer base, overlay;
+  Instances base, overlay;
   std::vector<std::uint32_t> by_id;                                // instances of the base, sorted by object
   std::vector<std::pair<std::uint32_t, const RayObject*>> hidden;  // instances of the base, and what stood there
   bool counts_blockers = false;
@@ -206,7 +206,7 @@ void put_in_order(std::vector<Crossing>& crossings) {
 }  // namespace
 
 struct Tracer::Impl {
-  using Layer = TopLevel::Impl::Layer;
+  using Instances = TopLevel::Impl::Instances;
   EmbreeDevice device;
   bool count_blockers;
   struct BottomLevel {
@@ -267,25 +267,25 @@ struct Tracer::Impl {
     return handle;
   }
 
-  Layer build(std::span<const Placed> objects) {
-    Layer layer;
+  Instances build(std::span<const Placed> objects) {
+    Instances instances;
     for (const Placed& placed : objects)
-      if (placed.object->alive && !placed.object->mesh->triangles.empty()) layer.placed.push_back(placed);
-    if (layer.placed.empty()) return layer;
+      if (placed.object->alive && !placed.object->mesh->triangles.empty()) instances.placed.push_back(placed);
+    if (instances.placed.empty()) return instances;
     // An object alone would be the root of its top level and be met without the test of its box that it gets among
     // others; boxes of instances are rounded, so at silhouettes the two could disagree. Twice the same object makes it
     // a child.
-    if (layer.placed.size() == 1) layer.placed.push_back(layer.placed.front());
-    layer.scene = device.new_scene();
-    for (std::size_t i = 0; i < layer.placed.size(); ++i) {
-      const RayObject& object = *layer.placed[i].object;
+    if (instances.placed.size() == 1) instances.placed.push_back(instances.placed.front());
+    instances.scene = device.new_scene();
+    for (std::size_t i = 0; i < instances.placed.size(); ++i) {
+      const RayObject& object = *instances.placed[i].object;
       const GeometryHandle instance = new_instance(object);
-      rtcAttachGeometryByID(layer.scene.get(), instance.get(), static_cast<unsigned>(i));
-      layer.meshes.push_back(object.mesh);
+      rtcAttachGeometryByID(instances.scene.get(), instance.get(), static_cast<unsigned>(i));
+      instances.meshes.push_back(object.mesh);
     }
-    rtcCommitScene(layer.scene.get());
+    rtcCommitScene(instances.scene.get());
     device.check();
-    return layer;
+    return instances;
   }
 };
 
@@ -324,7 +324,7 @@ Tracer::TopLevel Tracer::build(const RayScene& scene) {
 
 void Tracer::replace(TopLevel& level, std::span<const ObjectId> hidden, std::span<const Placed> added) {
   if (!level.impl_) level = build(std::span<const Placed>());
-  TopLevel::Impl::Layer overlay = impl_->build(added);  // first: where memory is short, the level stays as it is
+  TopLevel::Impl::Instances overlay = impl_->build(added);  // first: where memory is short, the level stays as it is
   TopLevel::Impl& top = *level.impl_;
   std::vector<Placed>& placed = top.base.placed;
   top.hidden.reserve(placed.size() < 2 * hidden.size() ? placed.size() : 2 * hidden.size());

@@ -1,5 +1,5 @@
 // Rays against triangles. The only interface to Embree: one bottom level per mesh, one instance per object, top levels
-// for the whole scene and for selections over the same bottom levels. After edits a top level is layered: its base
+// for the whole scene and for selections over the same bottom levels. After edits a top level is stacked: its base
 // without what changed since, and a small overlay. Results depend on the ray and the objects alone: never on build
 // order, layers, thread count, or on what else is in the top level. Coincident hits are ordered by (t, object key,
 // primitive).

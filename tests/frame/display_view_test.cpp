@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "frame/preview.h"
 #include "run_program.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 namespace {

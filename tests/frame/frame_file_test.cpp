@@ -16,7 +16,7 @@
 #include "frame/half_bits.h"
 #include "frame/preview.h"
 #include "run_program.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 namespace {

@@ -7,7 +7,7 @@
 #include "fuzz_case.h"
 #include "fuzz_targets.h"
 #include "libfuzzer_mutate.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 namespace {

@@ -1,6 +1,4 @@
 // Image decoding and mip pyramids: values as stored in the file, damage refused, and exact box filters.
-#include "scene/texture/image.h"
-
 #include <ImfRgbaFile.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,6 +8,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "scene/texture/decode_pyramid.h"
 #include "scene/texture/exr_header.h"
 #include "scene/texture/image_stream.h"
 

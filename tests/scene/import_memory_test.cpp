@@ -14,7 +14,7 @@
 #include "base/system/sanitizers.h"
 #include "cache/scene_parts.h"
 #include "run_program.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 #include "scene/texture/image_stream.h"
 
 namespace relook {

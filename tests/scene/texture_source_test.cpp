@@ -9,7 +9,7 @@
 #include "gltf_writer.h"
 #include "run_program.h"
 #include "scene/gltf/import.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 namespace {

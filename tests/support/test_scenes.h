@@ -13,7 +13,7 @@
 #include "edit/journal.h"
 #include "frame/image.h"
 #include "scene/compile/state.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 

@@ -9,7 +9,7 @@
 
 #include "scene/look/look.h"
 #include "scene/scene.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 

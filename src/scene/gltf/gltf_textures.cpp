@@ -1,7 +1,7 @@
 #include "scene/gltf/gltf_textures.h"
 
 #include "base/error.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 #include "scene/texture/image_stream.h"
 
 namespace relook {

@@ -1,4 +1,4 @@
-// Layered top levels: after any sequence of edits a base with hidden objects and an overlay answers every ray and
+// Stacked top levels: after any sequence of edits a base with hidden objects and an overlay answers every ray and
 // shadow segment with the same bits as a top level built afresh over the objects as they are.
 #include <gtest/gtest.h>
 
@@ -124,9 +124,9 @@ struct Answers {
   std::size_t hits = 0, blocked = 0, filtered = 0;
 };
 
-void expect_same_answers(const Tracer::TopLevel& layered, const Tracer::TopLevel& fresh, const Ray& ray,
+void expect_same_answers(const Tracer::TopLevel& stacked, const Tracer::TopLevel& fresh, const Ray& ray,
                          Answers& answers) {
-  const Meeting a = Tracer::intersect(layered, ray), b = Tracer::intersect(fresh, ray);
+  const Meeting a = Tracer::intersect(stacked, ray), b = Tracer::intersect(fresh, ray);
   ASSERT_EQ(a.object, b.object);
   ASSERT_EQ(a.t, b.t);
   ASSERT_EQ(a.key, b.key);
@@ -134,16 +134,16 @@ void expect_same_answers(const Tracer::TopLevel& layered, const Tracer::TopLevel
   answers.hits += a.object.is_none() ? 0 : 1;
   std::vector<Crossing> crossings_a, crossings_b;
   const bool passes = Tracer::passes(fresh, ray, crossings_b);
-  ASSERT_EQ(Tracer::passes(layered, ray, crossings_a), passes);
+  ASSERT_EQ(Tracer::passes(stacked, ray, crossings_a), passes);
   if (!passes) crossings_a = crossings_b;  // says nothing then
   ASSERT_EQ(crossings_a, crossings_b);
   answers.blocked += passes ? 0 : 1;
   answers.filtered += passes && !crossings_b.empty() ? 1 : 0;
 }
 
-void expect_same_blockers(const Tracer::TopLevel& layered, const Tracer::TopLevel& fresh, const Ray& ray) {
+void expect_same_blockers(const Tracer::TopLevel& stacked, const Tracer::TopLevel& fresh, const Ray& ray) {
   std::vector<Crossing> a, b;
-  Tracer::blockers(layered, ray, a);
+  Tracer::blockers(stacked, ray, a);
   Tracer::blockers(fresh, ray, b);
   ASSERT_EQ(a, b);
 }
@@ -151,7 +151,7 @@ void expect_same_blockers(const Tracer::TopLevel& layered, const Tracer::TopLeve
 /// Rounds of edits on one base; each replaces the layers of the round before.
 void check_rounds(Stage& stage, bool count_blockers, Answers& answers) {
   Tracer tracer(count_blockers);
-  Tracer::TopLevel layered = tracer.build(stage.all());
+  Tracer::TopLevel stacked = tracer.build(stage.all());
   std::vector<std::size_t> changed;
   for (int round = 0; round < 12; ++round) {
     SCOPED_TRACE("round " + std::to_string(round));
@@ -165,20 +165,20 @@ void check_rounds(Stage& stage, bool count_blockers, Answers& answers) {
       hidden.push_back(stage.placed(i).id);
       added.push_back(stage.placed(i));
     }
-    tracer.replace(layered, hidden, added);
+    tracer.replace(stacked, hidden, added);
     const Tracer::TopLevel fresh = tracer.build(stage.all());
-    ASSERT_EQ(layered.empty(), fresh.empty());
+    ASSERT_EQ(stacked.empty(), fresh.empty());
     for (int i = 0; i < 3000; ++i) {
       Ray ray = stage.ray();
       if (i % 2 == 0) ray.t_max = 1;
-      ASSERT_NO_FATAL_FAILURE(expect_same_answers(layered, fresh, ray, answers)) << "ray " << i;
+      ASSERT_NO_FATAL_FAILURE(expect_same_answers(stacked, fresh, ray, answers)) << "ray " << i;
       if (!count_blockers) continue;
-      ASSERT_NO_FATAL_FAILURE(expect_same_blockers(layered, fresh, ray)) << "ray " << i;
+      ASSERT_NO_FATAL_FAILURE(expect_same_blockers(stacked, fresh, ray)) << "ray " << i;
     }
   }
 }
 
-TEST(LayeredLevel, EqualsALevelBuiltAfreshOnTheTestScenes) {
+TEST(StackedLevel, EqualsALevelBuiltAfreshOnTheTestScenes) {
   std::mt19937 engine(1996);
   Answers answers;
   for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study})
@@ -193,7 +193,7 @@ TEST(LayeredLevel, EqualsALevelBuiltAfreshOnTheTestScenes) {
   EXPECT_GT(answers.filtered, 5000U);
 }
 
-TEST(LayeredLevel, EqualsALevelBuiltAfreshOnHeaps) {
+TEST(StackedLevel, EqualsALevelBuiltAfreshOnHeaps) {
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 engine(seed);
@@ -207,16 +207,16 @@ TEST(LayeredLevel, EqualsALevelBuiltAfreshOnHeaps) {
   }
 }
 
-class LayeredLevelEnds : public testing::Test {
+class StackedLevelEnds : public testing::Test {
  protected:
-  void expect_equal(const Tracer::TopLevel& layered, const std::vector<Tracer::Placed>& objects) {
+  void expect_equal(const Tracer::TopLevel& stacked, const std::vector<Tracer::Placed>& objects) {
     const Tracer::TopLevel fresh = tracer_.build(objects);
-    EXPECT_EQ(layered.empty(), fresh.empty());
+    EXPECT_EQ(stacked.empty(), fresh.empty());
     Answers answers;
     for (int i = 0; i < 5000; ++i) {
       const Ray ray = stage_.ray();
-      ASSERT_NO_FATAL_FAILURE(expect_same_answers(layered, fresh, ray, answers)) << "ray " << i;
-      ASSERT_NO_FATAL_FAILURE(expect_same_blockers(layered, fresh, ray)) << "ray " << i;
+      ASSERT_NO_FATAL_FAILURE(expect_same_answers(stacked, fresh, ray, answers)) << "ray " << i;
+      ASSERT_NO_FATAL_FAILURE(expect_same_blockers(stacked, fresh, ray)) << "ray " << i;
     }
     EXPECT_EQ(answers.hits == 0, fresh.empty());
   }
@@ -232,7 +232,7 @@ class LayeredLevelEnds : public testing::Test {
   Tracer tracer_{true};
 };
 
-TEST_F(LayeredLevelEnds, EverythingHidden) {
+TEST_F(StackedLevelEnds, EverythingHidden) {
   Tracer::TopLevel level = tracer_.build(stage_.all());
   tracer_.replace(level, ids(), {});
   EXPECT_TRUE(level.empty());
@@ -243,7 +243,7 @@ TEST_F(LayeredLevelEnds, EverythingHidden) {
   expect_equal(level, one);
 }
 
-TEST_F(LayeredLevelEnds, EachReplaceStartsFromTheBase) {
+TEST_F(StackedLevelEnds, EachReplaceStartsFromTheBase) {
   Tracer::TopLevel level = tracer_.build(stage_.all());
   const std::vector<Tracer::Placed> one = {stage_.placed(1)};
   tracer_.replace(level, ids(), one);
@@ -256,7 +256,7 @@ TEST_F(LayeredLevelEnds, EachReplaceStartsFromTheBase) {
   expect_equal(level, stage_.all());
 }
 
-TEST_F(LayeredLevelEnds, BaseEmpty) {
+TEST_F(StackedLevelEnds, BaseEmpty) {
   Tracer::TopLevel never_built, built = tracer_.build(std::vector<Tracer::Placed>());
   for (Tracer::TopLevel* level : {&never_built, &built}) {
     EXPECT_TRUE(level->empty());
@@ -267,7 +267,7 @@ TEST_F(LayeredLevelEnds, BaseEmpty) {
   }
 }
 
-TEST_F(LayeredLevelEnds, BaseOfOneObject) {
+TEST_F(StackedLevelEnds, BaseOfOneObject) {
   const std::vector<Tracer::Placed> one = {stage_.placed(1)}, other = {stage_.placed(2)};
   Tracer::TopLevel level = tracer_.build(one);
   expect_equal(level, one);
@@ -279,7 +279,7 @@ TEST_F(LayeredLevelEnds, BaseOfOneObject) {
   expect_equal(level, other);
 }
 
-TEST_F(LayeredLevelEnds, ObjectsThatDoNotLiveAreNotAdded) {
+TEST_F(StackedLevelEnds, ObjectsThatDoNotLiveAreNotAdded) {
   Tracer::TopLevel level = tracer_.build(stage_.all());
   RayObject dead = *stage_.placed(1).object;
   dead.alive = false;
@@ -288,7 +288,7 @@ TEST_F(LayeredLevelEnds, ObjectsThatDoNotLiveAreNotAdded) {
   EXPECT_TRUE(level.empty());
 }
 
-TEST_F(LayeredLevelEnds, BlockersAreThoseOfEveryObjectAlone) {
+TEST_F(StackedLevelEnds, BlockersAreThoseOfEveryObjectAlone) {
   const Tracer::TopLevel level = tracer_.build(stage_.all());
   std::vector<Tracer::TopLevel> alone;
   for (const Tracer::Placed& placed : stage_.all()) alone.push_back(tracer_.build(std::vector<Tracer::Placed>{placed}));
@@ -316,7 +316,7 @@ TEST_F(LayeredLevelEnds, BlockersAreThoseOfEveryObjectAlone) {
 }
 
 // A box that rounding puts just behind the end of the segment was opened only if something else had been met there.
-TEST(LayeredLevel, TheEndOfASegmentDoesNotDependOnOtherObjects) {
+TEST(StackedLevel, TheEndOfASegmentDoesNotDependOnOtherObjects) {
   SceneBuilder scene;
   const int dull = scene.material("Dull", Json::object());
   scene.node("Box", {{"mesh", scene.mesh("Box", box_mesh(Point(0.3F, 0.4F, 0.7F)), dull)}});

@@ -1,4 +1,4 @@
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 #include <algorithm>
 #include <array>
