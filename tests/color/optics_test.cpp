@@ -33,7 +33,7 @@ struct Hits {
   std::vector<std::vector<float>> values;  // [variable][hit]
 
   void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&, Scratch& scratch) const {
-    const float* from = values[step.payload >> 8].data() + first;
+    const float* from = values[step.payload.which()].data() + first;
     std::copy(from, from + lanes, scratch.own(step.out));
   }
 };
@@ -58,7 +58,7 @@ void expect_equal_bits(const std::array<Range, N>& ranges, const Formula& formul
   const Scene scene;
   ExpressionBuilder builder(scene, {});
   const auto variables = [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array{Scalar{&builder, builder.input(Input::position, I)}...};
+    return std::array{Scalar{&builder, builder.input(Input::position, 0, I)}...};
   }
   (std::make_index_sequence<N>());
   std::vector<Value> outputs;

@@ -40,7 +40,7 @@ TEST_P(ClassOfChange, is_what_replay_does) {
     const ChangeClass stated = classify(state.scene(), delta).change;
     const StepChange done = find_change(rays, state.scene(), delta, old_lights);
     const bool is_shown = all_are_shown(rays, state.scene(), delta);
-    rays.update(state.scene(), delta);
+    rays = rays.after(state.scene(), delta);
     const bool is_stated_geometric = stated == ChangeClass::geometric || stated == ChangeClass::mixed;
     const bool is_done_geometric = done.any_moved || done.rays.lights_changed;
     const std::string what = std::string(change_class_name(stated)) + ": " + Json(edit).dump();

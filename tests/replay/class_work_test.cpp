@@ -84,11 +84,11 @@ void expect_work_of_classes(SceneState state, const std::filesystem::path& file)
   Image image = preprocessed(state.scene(), {1, 6, 0});
   Replayer replayer(std::move(state), std::move(image));
   for (const JournalStep& step : journal.steps)
-    for (const Edit& edit : frames_of(step)) {
+    for (std::size_t frame = 0; frame < step.frames(); ++frame) {
       SCOPED_TRACE(step.name);
       const Scene before = replayer.state().scene();
       const std::uint64_t segments = size_of(replayer.image(), before.light_order.size()).shadows;
-      const StepResult result = replayer.step(edit, journal.file, folder);
+      const StepResult result = replayer.step(step.edit_of(frame), journal.file, folder);
       expect_work_of_class(result, moved_between(before, replayer.state().scene()), segments);
     }
 }

@@ -98,8 +98,8 @@ struct Depth {
   void visit(const TreeNode& node, History history, std::size_t generation) {
     most = std::max(most, generation);
     for (const auto& [branch, child] : node.children) {
-      folded += is_folded(history) ? 1 : 0;
-      visit(child, child_of(history, branch), generation + 1);
+      folded += history.is_folded() ? 1 : 0;
+      visit(child, history.child(branch), generation + 1);
     }
   }
 };
@@ -113,7 +113,7 @@ TEST_P(DeepTrees, FoldedHistoriesGiveTheFramesOfFullRenders) {
   const Image image = preprocessed(state.scene(), view);
   Depth depth;
   for (std::size_t sample = 0; sample < image.frame.pixels.size(); ++sample)
-    depth.visit(read_tree(image, 0, sample, state.scene().light_order.size()), kPrimary, 1);
+    depth.visit(read_tree(image, 0, sample, state.scene().light_order.size()), History::primary(), 1);
   EXPECT_EQ(depth.most, view.max_depth);
   EXPECT_GT(depth.folded, image.frame.pixels.size());
   expect_full_renders(std::move(state), view, hall_rows(), std::nullopt,

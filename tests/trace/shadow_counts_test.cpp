@@ -10,6 +10,7 @@
 #include "replay/replay.h"
 #include "test_scenes.h"
 #include "trace/shadow/shadow_counter.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/grow.h"
 #include "tree_reader.h"
 #include "unbounded_counter.h"
