@@ -15,7 +15,7 @@
 
 namespace relook {
 
-/// Which structures are kept beside ray paths and ray trees.
+/// Which structures are kept beside ray paths, and how much of them.
 struct RegionOptions {
   std::size_t groups = 4;           // most paths of a group; 0: none
   std::size_t tunnels = 1;          // most of a region; 0: none
