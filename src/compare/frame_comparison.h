@@ -48,9 +48,9 @@ struct FrameComparison {
 [[nodiscard]] FrameComparison compare_closely(const Frame& a, const Frame& b, const Thresholds& thresholds,
                                               const std::optional<DisplayWhite>& white);
 
-/// difference_json() with psnr, ssim, flip, worst_pixel, not_finite, pixels_above_fail, verdict, first_difference (null
-/// when equal) and layers. Channels that are not finite are "nan", "inf" or "-inf". Equal frames have psnr null
-/// (infinite), ssim 1 and flip 0.
+/// difference_json() with psnr, ssim, flip, worst_pixel, not_finite, pixels_above_fail, pixels_above_warn, verdict,
+/// first_difference (null when equal) and layers. Channels that are not finite are "nan", "inf" or "-inf". Equal frames
+/// have psnr null (infinite), ssim 1 and flip 0.
 [[nodiscard]] Json comparison_json(const FrameComparison& comparison);
 
 }  // namespace relook

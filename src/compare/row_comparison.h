@@ -31,8 +31,8 @@ struct ChannelTotals {
   double max_error = 0, squares = 0;
 };
 
-/// Half and float are compared by value. Requires: a row of the window [x0, x0 + row.errors.size()); both kinds uint,
-/// or none.
+/// A half and a float are compared as floats, two of a kind bit by bit. Requires: a row of the window
+/// [x0, x0 + row.errors.size()); both kinds uint, or none.
 void compare_rows(const SampleRow& a, const SampleRow& b, std::int64_t x0, bool is_id, LayerRow& row,
                   ChannelTotals& totals);
 

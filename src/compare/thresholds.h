@@ -7,7 +7,7 @@
 namespace relook {
 
 /// What may differ; without any, nothing may. A pixel's error is the largest of its channels. Differences that are not
-/// finite are above every threshold and in no percentage.
+/// finite are above every threshold, and no percentage lets them pass.
 struct Thresholds {
   std::optional<double> fail = std::nullopt;       // errors above it count; none: any other bits count
   double fail_percent = 0;                         // of the pixels may count

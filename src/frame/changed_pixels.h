@@ -10,7 +10,7 @@
 
 namespace relook {
 
-/// Bit x of rows[y] stands for the pixel (x, y) of a tile.
+/// Bit x of mask[y] stands for the pixel (x, y) of a tile.
 using TileMask = std::array<std::uint64_t, kTileSize>;
 static_assert(kTileSize == 64);
 

@@ -20,7 +20,7 @@ namespace relook {
 namespace {
 
 constexpr std::int64_t kBandBytes = std::int64_t{32} << 20;         // about so much is decoded at a time
-constexpr std::int64_t kLargestChunkBytes = std::int64_t{1} << 30;  // of what a file can only be decoded by
+constexpr std::int64_t kLargestChunkBytes = std::int64_t{1} << 30;  // of the least that can be decoded
 
 /// Runs `read`; what OpenEXR throws becomes an InputError.
 template <class Read>

@@ -95,7 +95,7 @@ class ImageRows {
   std::int64_t band_rows_;
   PixelWindow band_;
   Bytes samples_;                     // channel by channel, [height of band_ * width]
-  std::vector<std::size_t> offsets_;  // of each channel in a row of band_, bytes per pixel
+  std::vector<std::size_t> offsets_;  // by channel: bytes of a pixel in the channels before it
 };
 
 }  // namespace relook

@@ -59,8 +59,8 @@ void check(exr_result_t result) {
     throw IoError("", std::string("OpenEXR cannot hold the frame: ") + exr_get_default_error_message(result));
 }
 
-/// Of channels and attributes, the zero at their ends not counted, unless the file says that it has long ones: only
-/// files that do have them say so.
+/// Bytes of the name of a channel or attribute, without the zero at its end, in a file that does not announce long
+/// ones. Only files that have some announce them.
 constexpr std::size_t kLongestShortName = 31;
 bool has_long_names(std::span<const ExrChannel> channels, const ExrAttributes& attributes) {
   const auto is_long = [](const std::string& name) { return name.size() > kLongestShortName; };

@@ -31,7 +31,7 @@ class HitCheck {
 };
 
 /// Traces the tiles of `losses` again and builds tunnels anew, so that `content` is as it was written, byte for byte.
-/// Returns what keeps the scene from being compiled.
+/// Returns what keeps the scene from being compiled, or that the table lacks paths of the scene.
 [[nodiscard]] CacheAnswer make_good(CacheContent& content, const CacheLosses& losses);
 
 /// What a replay starts from.
@@ -44,9 +44,9 @@ struct OpenedCache {
   std::shared_ptr<StoredTunnels> tunnels;    // null: the cache has none
   std::shared_ptr<const Manifest> manifest;  // that all of it has been read by
 };
-/// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, otherwise they are faults, those of
-/// tunnels, which are not read otherwise, too. On a fault `opened` is untouched. `residency`: tiles leave memory for it
-/// as they are read; null: all are kept.
+/// Reads a cache and compiles its scene meanwhile. `mends`: losses are made good, and tunnels are not read yet;
+/// otherwise losses are faults, and tunnels are checked, too. On a fault `opened` is untouched. `residency`: tiles
+/// leave memory for it as they are read; null: all are kept.
 [[nodiscard]] CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCache& opened,
                                      Residency* residency = nullptr);
 

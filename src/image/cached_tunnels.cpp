@@ -33,7 +33,7 @@ class Enclosing {
   PathClasses classes_;
 };
 
-/// Every so many cells of a tile are looked at.
+/// One cell in so many is looked at, from a place on that differs from tile to tile.
 constexpr std::uint32_t kCellStride = 11;
 
 bool are_tunnels(std::span<const Tunnel> built, const TileTunnels& stored, std::uint32_t region) {

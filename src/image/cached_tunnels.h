@@ -1,4 +1,4 @@
-// Tunnels of a cache against the ray trees that they are to enclose.
+// Tunnels of a cache against the ray trees that they are to enclose: lost ones are built again, stored ones checked.
 #pragma once
 #include <span>
 

@@ -30,7 +30,8 @@ struct LayerScene {
 class LayerTile {
  public:
   LayerTile(const LayerScene& scene, ProgramTable& programs);
-  /// `frame`: of the scene; `changed`: its pixels that have, null for none.
+  /// The values of a tile's layers, valid until the next call. `frame`: of the scene; `changed`: which pixels of the
+  /// tile have changed, null for none.
   [[nodiscard]] const LayerColumns& columns(const TileRect& rect, const Frame& frame, const TileMask* changed);
 
  private:

@@ -15,7 +15,7 @@
 
 namespace relook {
 
-/// Which structures are kept beside ray paths and ray trees.
+/// Which structures are kept beside ray paths, and how much of them.
 struct RegionOptions {
   std::size_t groups = 4;           // most paths of a group; 0: none
   std::size_t tunnels = 1;          // most of a region; 0: none
@@ -61,6 +61,7 @@ class ImageRegions {
   bool update(const Image& image, const GrowScene& grow, std::size_t tile, const Leaves& changed,
               const ClassOf& class_of);
 
+  /// After update() of these tiles: what the regions above them know.
   void update_image(const std::vector<std::size_t>& tiles);
 
   /// By tile: may it have a path class that is flagged? Requires has_groups().

@@ -57,14 +57,15 @@ class StoredImage {
   /// sample by sample as often as the tile has samples, all are found now, and kept. Tiles may be done at the same
   /// time. Requires: its ray trees are leased and hold in `scene`.
   GrowCounters bring_back_hits(std::size_t tile, const Leaves& leaves, const GrowScene& scene);
-  /// Takes over the hits and colours of a tile's new samples, which have none any more. Tiles may be done at the same
+  /// Takes the hits and colours of a tile's new samples out of `fresh` and keeps them. Tiles may be done at the same
   /// time; the tile's paths are the old ones until keep_paths().
   void keep_hits(NewSamples& fresh);
   /// Takes over the paths of new samples whose hits have been kept, and keeps the regions equal to what would be built
   /// from the trees. `fresh`: by tile. `scene`: in which they hold. `lights_changed`: all samples have been packed
   /// anew, since the form of paths follows the light order.
   void keep_paths(std::span<const NewSamples> fresh, const GrowScene& scene, bool lights_changed);
-  /// Of tiles that missed theirs and have no changed trees, which keep_paths() sees to. `scene`: in which trees hold.
+  /// Builds tunnels of tiles that missed theirs, unless keep_paths() has, as it does where trees have changed. `scene`:
+  /// in which trees hold.
   void bring_back_tunnels(std::span<const NewSamples> fresh, const GrowScene& scene);
   /// Tunnels that were worked out again since the last call: they had left memory, or paths were numbered afresh.
   [[nodiscard]] Moves take_rebuilt();

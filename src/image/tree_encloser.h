@@ -14,8 +14,8 @@ namespace relook {
 
 class TreeEncloser {
  public:
-  /// `most`: tunnels of a region. `trees_lease`: of the tile's ray trees, if they may leave memory. All else outlives
-  /// it.
+  /// `most`: how many tunnels a region has at most. `trees_lease`: of the tile's ray trees, if they may leave memory.
+  /// All else outlives it.
   TreeEncloser(const Image& image, const GrowScene& grow, std::size_t tile, std::size_t most, const ClassOf& class_of,
                Residency::Lease trees_lease = {});
   /// The tunnels around the trees of a part of the tile, until the next call.

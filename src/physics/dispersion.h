@@ -5,7 +5,7 @@
 
 namespace relook {
 
-/// Of the indices of blue and of red from the middle's.
+/// How far the indices of blue and of red lie from the middle's.
 template <class S>
 [[nodiscard]] S half_spread(S ior, S dispersion) {
   return (max(ior, 1.0F) - 1.0F) * (dispersion * 0.025F);

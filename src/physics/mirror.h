@@ -6,8 +6,8 @@ namespace relook {
 
 [[nodiscard]] inline Direction unit(const Direction& v) { return v / std::sqrt(v.dot(v)); }
 
-/// The way of the ray that a surface of normal `n` reflects from the way `d`, kept on the outer side of the geometric
-/// surface.
+/// The way of the ray that a surface of normal `n` reflects from the way `d`, kept on the side of the geometric surface
+/// to which `geometric` points: that of the incoming ray.
 [[nodiscard]] inline Direction mirrored(const Direction& d, const Normal& n, const Normal& geometric) {
   Direction r = d - n * (2.0F * d.dot(n));
   const float height = r.dot(geometric);

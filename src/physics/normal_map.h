@@ -18,7 +18,7 @@ struct UnmappedNormals {
 };
 
 /// `texel`: of the map, [0, 1]; `scale`: its strength. `unit`(vector, normal of the front): the vector with length 1.
-/// A normal that would lie below the geometric surface is left as it is.
+/// Where the bent normal would lie below the geometric surface, the smooth one is returned as it is.
 template <class V, class Unit>
 [[nodiscard]] V mapped_normal(const MapAxes<V>& axes, const UnmappedNormals<V>& normals, const V& texel,
                               ScalarOf<V> scale, const Unit& unit) {

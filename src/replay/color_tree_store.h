@@ -15,7 +15,7 @@
 
 namespace relook {
 
-/// Those of one tile.
+/// The compressed trees of one tile, for one set of parameters.
 struct TileColorTrees {
   std::vector<CompressedBlock> blocks;
   std::vector<std::uint32_t> samples;  // of the tile, increasing: the roots of all blocks, one after the other
@@ -25,7 +25,7 @@ struct TileColorTrees {
   std::size_t bytes = 0;
 };
 
-/// Those of one set of parameters.
+/// The compressed trees of one set of parameters.
 struct ColorTreeSet {
   ColorTreeSet(ParameterSet of, std::size_t tile_count, std::size_t place)
       : number(place), parameters(std::move(of)), tiles(tile_count) {}

@@ -23,7 +23,8 @@ void count_works(const std::vector<TileWork>& works, StepResult& result) {
   }
 }
 
-/// `touches_segments`: what of them nobody looked at, tunnels have ruled out.
+/// Stored segments that no tile looked at were ruled out by tunnels if the change `touches_segments`, otherwise by its
+/// class.
 void count_updates(const std::vector<TileUpdate>& updates, const StoredImage& stored, bool touches_segments,
                    Counters& counters) {
   std::uint64_t tests = 0, left_out = stored.segments();

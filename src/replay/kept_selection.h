@@ -1,5 +1,6 @@
 // Selection-dependent preprocessing (paper 3.1): the regions that depend on what steps edit, kept as long as steps
-// change colours or optics, whatever they take turns at. What has the least information weight goes first (paper 4.3).
+// change colours or optics, also where they edit several things in turn. What has the least information weight goes
+// first (paper 4.3).
 #pragma once
 #include <cstdint>
 #include <vector>

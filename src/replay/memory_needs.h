@@ -1,5 +1,5 @@
 // What a replay under --memory will need beside pieces, foreseen from the scene: for the floor that it names, and for
-// the first full render of --verify. What follows is measured (cache/residency/RESIDENCY.md).
+// the first full render of --verify. Later renders are known from those before (cache/residency/RESIDENCY.md).
 #pragma once
 #include <cstddef>
 #include <cstdint>

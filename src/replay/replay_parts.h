@@ -44,7 +44,7 @@ struct ReplayParts {
   std::unique_ptr<SceneLevel> level;  // null until a step first needs rays
 
  private:
-  /// Of acceleration structures: what they take has no other place to go.
+  /// Tells the residency what acceleration structures take, so that pieces make room for them; none without a limit.
   [[nodiscard]] MemoryMonitor monitor();
 };
 

@@ -67,8 +67,8 @@ struct TileTools {
 [[nodiscard]] std::vector<bool> tiles_with_tasks(const ImageRegions& regions, const PathTasks& tasks,
                                                  RegionCounters& counters);
 [[nodiscard]] TileWork find_tile_work(const UpdatePass& pass, std::size_t tile);
-/// Before a tile is worked on at some leaves: its hits, if it misses them, they are needed often enough, and no path of
-/// it has another tree now. Requires: the tile's ray trees are leased.
+/// Before a tile is worked on at some leaves: finds its hits again if it misses them, they are needed often enough, and
+/// no path of it is to have its trees updated. Requires: the tile's ray trees are leased.
 GrowCounters bring_back_hits(const UpdatePass& pass, std::size_t tile, const Leaves& leaves);
 /// Requires: the tile's ray trees are leased.
 [[nodiscard]] TileUpdate update_tile(const UpdatePass& pass, std::size_t tile, const TileWork& work,

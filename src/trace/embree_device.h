@@ -1,5 +1,6 @@
 // Embree's device: what is made with it, released when nobody holds it any more, and what went wrong, as our own
-// errors. Embree is C to us: nothing is thrown through it. With tracer.cpp the only place that sees Embree, 3 or 4.
+// errors. Embree is C to us: nothing is thrown through it. Beside this only tracer.cpp and embree_version.cpp
+// see Embree, 3 or 4.
 #pragma once
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>

@@ -7,7 +7,7 @@
 namespace relook {
 namespace {
 
-/// An object's top level takes some 10 KB: not many more of them stay than this.
+/// An object's top level takes some 10 KB: where more than this many are there, the next edit drops all.
 constexpr std::size_t kMostKept = 4096;
 
 }  // namespace

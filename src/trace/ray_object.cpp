@@ -53,7 +53,7 @@ Point largest_in(const Box& bounds) {
   return largest;
 }
 
-/// A mesh without extent along one direction. Normals then follow from the triangles: across the sheet.
+/// Takes the extent along one direction out of a mesh. Its normals then follow from the triangles: across the sheet.
 void flatten(Mesh& mesh, const Transform& along) {
   mesh.normals.clear(), mesh.tangents.clear(), mesh.targets.clear(), mesh.joints.clear(), mesh.joint_weights.clear();
   mesh.bounds.makeEmpty();

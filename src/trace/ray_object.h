@@ -16,8 +16,8 @@ namespace relook {
 
 /// One object, ready for rays.
 struct RayObject {
-  std::shared_ptr<const Mesh> mesh;                               // deformed and displaced, if the object is
-  std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: derived where a map needs them
+  std::shared_ptr<const Mesh> mesh;                               // deformed, displaced, flattened if the object is
+  std::array<std::shared_ptr<const CornerTangents>, 2> tangents;  // by uv set: derived where a map or brush needs them
   std::shared_ptr<const Material> material;  // the values that bend and cut rays, as of this state of the scene
   MaterialId material_id;
   Transform to_world;
@@ -36,7 +36,7 @@ class RayObjectMaker {
   /// `material`: of the object, as it is to be.
   [[nodiscard]] RayObject make(const Scene& scene, const Object& object, std::shared_ptr<const Material> material);
   void set_material(RayObject& object, std::shared_ptr<const Material> material);
-  /// Forgets what no object uses any more.
+  /// Forgets derived tangents that no object uses any more; make() forgets shapes of the mesh that it is asked for.
   void drop_unused();
 
  private:

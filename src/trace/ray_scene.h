@@ -1,8 +1,8 @@
 // The scene frozen for rays: its objects as intersection, surface points and spawning need them, and where its lights
 // and its camera are. Invariant: a RayScene never changes. An edit gives another one, made from the one before it and
 // complete before anybody can read it; the two share what the edit did not touch. The order of a step is: edit the
-// Scene (edit/), classify by the RayScene from before and the Scene from after, freeze with after(), trace. Colour
-// parameters are not in it: see color/color_scene.h.
+// Scene (edit/), classify by the RayScene from before and the Scene from after, freeze with after(), trace. Colours are
+// not worked out from it alone: programs read their parameters in the Scene (color/color_scene.h).
 #pragma once
 #include <memory>
 #include <vector>

@@ -15,7 +15,7 @@ class SceneLevel {
   explicit SceneLevel(bool count_blockers, MemoryMonitor monitor = {}) : tracer_(count_blockers, std::move(monitor)) {}
   [[nodiscard]] Tracer& tracer() { return tracer_; }
 
-  /// Notes objects whose entries in the ray scene are others than before, for rays that meet them.
+  /// Notes objects that rays or shadow segments meet otherwise than before.
   void note_changed(std::span<const ObjectId> objects);
   /// The scene as it is now, without the objects `absent` (increasing). Valid until the next call.
   [[nodiscard]] const Tracer::TopLevel& current(const RayScene& scene, std::span<const ObjectId> absent = {});

@@ -1,5 +1,5 @@
-// Tables whose copies share their entries: a copy costs a pointer an entry and no reference count, an entry that is
-// replaced in it costs its block. Entries never change and stay where they are while any table has them.
+// Tables whose copies share their entries: a copy costs a pointer an entry and a reference count a block of entries, an
+// entry that is replaced in it costs its block. Entries never change and stay where they are while any table has them.
 #pragma once
 #include <array>
 #include <cstddef>

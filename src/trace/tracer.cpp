@@ -158,7 +158,7 @@ void look_for_nearest(RTCScene scene, const std::vector<Tracer::Placed>& placed,
   start(query, placed);
   RTCRayHit ray_hit;
   set_ray(ray_hit.ray, *query.ray);
-  // Boxes are entered no nearer than what may come after the last hit; those in which it lies, too.
+  // Nothing nearer than the last hit is looked for, less the slack: boxes in which that hit lies are entered, too.
   if (const Meeting& last = query.ray->behind; !last.object.is_none())
     ray_hit.ray.tnear = std::max(ray_hit.ray.tnear, 2 * last.t - reach(last.t, query));
   ray_hit.ray.tfar = reach(query.nearest.t, query);

@@ -1,8 +1,8 @@
-// Rays against triangles. The only interface to Embree: one bottom level per mesh, one instance per object, top levels
-// for the whole scene and for selections over the same bottom levels. After edits a top level is stacked: its base
-// without what changed since, and a small overlay. Results depend on the ray and the objects alone: never on build
-// order, layers, thread count, or on what else is in the top level. Coincident hits are ordered by (t, object key,
-// primitive).
+// Rays against triangles. The only interface to Embree: one bottom level per mesh (two where some of its objects report
+// each hit of a shadow segment and others end it), one instance per object, top levels for the whole scene and for
+// selections over the same bottom levels. After edits a top level is stacked: its base without what changed since, and
+// a small overlay. Results depend on the ray and the objects alone: never on build order, stacking, thread count, or on
+// what else is in the top level. Coincident hits are ordered by (t, object key, primitive).
 #pragma once
 #include <functional>
 #include <memory>

@@ -21,7 +21,7 @@ enum class Op : std::uint8_t {
   environment,     // payload: number of the component of color * intensity
   input,           // payload: Input, axis, which
   column,          // payload: number of a stored column: a subexpression that has been evaluated before (paper 3.3)
-  // functions of one, two, three values
+  // functions of one to four values
   sqrt,
   exp2,
   log2,
@@ -118,7 +118,7 @@ using Code = std::vector<Instruction>;
 [[nodiscard]] inline bool is_parameter(Op op) { return op <= Op::environment; }
 /// Plain arithmetic on lanes.
 [[nodiscard]] inline bool is_arithmetic(Op op) { return op >= Op::sqrt && op <= Op::multiply_add; }
-/// Does the value differ from sample to sample, given that of its operands?
+/// By value: is it the same for all samples of a batch?
 [[nodiscard]] std::vector<bool> find_uniform(const Code& code);
 
 /// Straight-line code over registers, uniform part first.

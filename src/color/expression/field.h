@@ -19,7 +19,7 @@ enum class LightField : std::uint8_t {
   intensity,
   inverse_range,
   outer_versine,       // 1 - cos of the outer cone angle
-  inverse_cone_width,  // of the difference to that of the inner one; the largest float for a hard edge
+  inverse_cone_width,  // 1 / (cos of the inner cone angle - cos of the outer); the largest float for a hard edge
   x,
   y,
   z,

@@ -1,4 +1,4 @@
-// Per-sample constants of colour programs: columns gathered from the nodes of a block.
+// Per-sample constants of colour programs: columns gathered from the nodes or filters of a block.
 #pragma once
 #include <span>
 

@@ -56,7 +56,7 @@ struct Parameters {
 /// Runs arithmetic steps up to the first that is none; returns where that is.
 const Kernel::Step* run_arithmetic(const Kernel::Step* step, const Kernel::Step* end, Scratch& scratch,
                                    std::size_t lanes);
-/// Runs a function that is not arithmetic: a lookup from operands, or the sheen table.
+/// Runs a function that is not arithmetic: a lookup from operands, a procedural weight, or the sheen table.
 void run_function(const Kernel::Step& step, const Parameters& parameters, Scratch& scratch, std::size_t lanes);
 
 /// One kernel over one batch. Source: load(step, first, lanes, parameters, scratch) fills the registers of a step that

@@ -1,6 +1,6 @@
 // Colour programs: the expression of a colour tree's node (paper 2.1) in a form that runs over many samples at once.
 // Leaves are constants, parameters (pointers into the scene) and inputs (per-sample constants); inner nodes are n-ary
-// functions. Equal subexpressions are shared; constant ones are folded; nothing is re-associated.
+// functions. Equal subexpressions are shared; operations on two constants are folded; nothing is re-associated.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -16,7 +16,7 @@ class BaseLayer {
   /// Cosine of the normal with the view.
   [[nodiscard]] Scalar nv() const { return nv_; }
 
-  /// value NL of both lobes, towards a lamp.
+  /// The value of both lobes times NL, for light from a lamp at `direction`.
   [[nodiscard]] Triple reflected(const Triple& direction);
   /// Ambient light, mirror and transmission: what depends on the view alone.
   [[nodiscard]] Triple view_terms();

@@ -8,7 +8,7 @@ class CoatLayer {
  public:
   explicit CoatLayer(SurfaceTerms& terms);
 
-  /// value NL, towards a lamp.
+  /// The value of the lobe times NL, for light from a lamp at `direction`.
   [[nodiscard]] Triple reflected(const Triple& direction);
   /// What the layer leaves of the light from below.
   [[nodiscard]] Scalar passed();

@@ -20,8 +20,8 @@ enum class Aspect : std::uint8_t { color, albedo, normal };
 /// Where light comes from, beside lamps: a bit each. The colour of an unlit surface is emission.
 enum Source : std::uint8_t { kAmbientSource = 1, kEnvironmentSource = 2, kEmissionSource = 4, kAllSources = 7 };
 
-/// A light that reaches a node: its place in the light order, and whether transparent surfaces stand in between; or
-/// one of which each node says for itself whether it does, and through what.
+/// A light that reaches a node. `order`: its place in the light order; `filtered`: transparent surfaces may stand in
+/// between; `asked`: each node says for itself whether the light reaches it.
 struct VisibleLight {
   LightId light;
   std::uint32_t order = 0;

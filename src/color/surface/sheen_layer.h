@@ -9,7 +9,7 @@ class SheenLayer {
   /// `normal`, `nv`: the base layer's, and its cosine with the view.
   SheenLayer(SurfaceTerms& terms, const Triple& normal, Scalar nv);
 
-  /// value NL, towards a lamp.
+  /// The value of the lobe times NL, for light from a lamp at `direction`.
   [[nodiscard]] Triple reflected(const Triple& direction);
   /// What the layer leaves of the light from below.
   [[nodiscard]] Scalar passed();

@@ -20,7 +20,7 @@ struct ShadowSegment {
   return object.optics.volume && point.inside;
 }
 
-/// Completes the filters [first, first + count) of one segment: points and lengths inside volumes.
+/// Completes the `count` filters of one segment of `node`, in its order: points, footprints, lengths inside volumes.
 void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSegment& segment, FilterNode* filters,
                       std::size_t count);
 

@@ -7,8 +7,8 @@
 
 namespace relook {
 
-/// How a ray left its parent. The numbers are on disk, but for that of the primary ray, and never change. The last
-/// three stand for `refraction` where colours part (KHR_materials_dispersion).
+/// How a ray left its parent. The numbers are on disk, but for that of the primary ray, and never change. The
+/// three `refracted_` ones stand for `refraction` where colours part (KHR_materials_dispersion).
 enum class Branch : std::uint8_t {
   reflection = 0,
   coat = 1,

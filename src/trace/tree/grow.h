@@ -19,7 +19,7 @@ struct GrowCounters {
   std::uint64_t ray_updates = 0;     // rays traced against the whole scene
   std::uint64_t shadow_updates = 0;  // shadow segments traced against the whole scene
   std::uint64_t ray_tests = 0;       // stored segments tested against the selection
-  CulledSegments culled;             // stored segments looked at, or dropped, that were not
+  CulledSegments culled;             // stored segments looked at, or dropped, without a test
   std::uint64_t object_rays = 0;     // rays and shadow segments against one known object, to find hits again or where
                                      // transparent surfaces stand on a shadow segment
   std::uint64_t trees_rebuilt = 0;   // whose hits these rays have found again
@@ -43,7 +43,7 @@ struct GrowScene {
   const Tracer::TopLevel* level = nullptr;  // the whole scene; null if nothing is traced
   std::uint32_t max_depth = 6;
   std::uint32_t shadow_bits = 0;  // of shadow counters; more than 0: the level is of a tracer that counts blockers
-  const ObjectLevels* objects = nullptr;  // for trees whose hits are not kept; null if there are none
+  const ObjectLevels* objects = nullptr;  // for hits, or distances of hits, that are not kept; null: all are known
 
   [[nodiscard]] PathLayout layout() const { return {scene.light_order().size(), shadow_bits}; }
 };

@@ -217,7 +217,8 @@ class FilterReader {
   std::size_t next_ = 0;
 };
 
-/// Takes the next node and its hits off a stored tree: its own, then those of its filters. None, of a hit: not kept.
+/// Takes the next node and its hits off a stored tree: its own, then those of its filters. A node
+/// that is a hit has none if hits are not kept.
 [[nodiscard]] inline PathNode take(StoredTree& stored, std::span<const Hit>& hits) {
   const PathNode node = stored.cursor.next();
   hits = {};
@@ -228,7 +229,7 @@ class FilterReader {
   return node;
 }
 
-/// Leaves out what is below a node: the number of its segments.
+/// Leaves out what is below a node. Returns the number of segments left out.
 inline std::uint64_t skip_children(StoredTree& stored, const PathNode& node) {
   std::uint64_t segments = 0;
   for (unsigned owed = node.children(); owed > 0; --owed) {

@@ -12,7 +12,7 @@ namespace relook {
 /// What stands between a hit and one light. How many opaque blockers is counted apart: see shadow_counter.h. The
 /// numbers are on disk.
 enum class ShadowState : std::uint8_t {
-  facing_away = 0,  // the light is below the geometric surface: no segment
+  facing_away = 0,  // the light is below the smooth surface, or none is gathered here: no segment
   open = 1,         // nothing in between
   filtered = 2,     // transparent blockers only: they follow in the path, from the hit towards the light
   blocked = 3,      // at least one opaque blocker

@@ -11,7 +11,8 @@ namespace {
 
 constexpr float kFresnelCut = 1e-3F;
 
-/// Of a coat, at a cosine of at most 1. Its weight is Schlick's but for the order of the products.
+/// What a coat reflects at a cosine of at most 1, towards the cut-off. The weight is that of schlick() but for the
+/// order of the products, which decides its last bits.
 float coat_term(float cosine) {
   const float m = 1.0F - cosine;
   return coat_reflectance(m * m * m * m * m);

@@ -30,7 +30,7 @@ struct RayNode {
   BranchSet cut;                                      // branches that the Fresnel cut-off removed
   float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
   float length = 0;                                   // metres from the ray's origin
-  float footprint = 0;                                // ray-cone width at the hit over the cosine of incidence
+  float footprint = 0;                                // metres: ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
 };
