@@ -1,5 +1,5 @@
-// Strict JSON: scanned for depth, size and duplicate keys before it is built, and read through one reader that checks
-// type, range and finiteness and names the place in every error.
+// Strict JSON: depth, number of values and duplicate keys are checked as the text is read, before a value is kept, and
+// values are read through one view that checks type, range and finiteness and names the place in every error.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>

@@ -44,8 +44,8 @@ class Transaction {
   [[nodiscard]] Tokens resolve(const std::string& pointer, const PatchPlace& place) const;
   void run(Resolved& resolved);
   /// What a replace overwrites. A member that its schema marks as unwritten (scene/look/look_schema.h: light range,
-  /// attenuation distance, texture mapping) is created as null if the document omits it, together with the plain objects
-  /// it lies in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
+  /// attenuation distance, texture mapping) is created as null if the document omits it, together with the plain
+  /// objects it lies in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
   [[nodiscard]] Json& replaced_value(const Tokens& path, const PatchPlace& place);
   /// Counts a value that is to be copied to `to` ("/nodes" and below) against what a copy may make.
   void count_copy(const Json& value, const Tokens& to, const PatchPlace& place);

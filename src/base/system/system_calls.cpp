@@ -133,7 +133,7 @@ std::vector<sock_filter> system_call_filter(pid_t own) {
     filter.answer(kFail);
     filter.answer(SECCOMP_RET_ALLOW);
   }
-  // Both type into the terminal from which the program was started.
+  // TIOCSTI and TIOCLINUX type into the terminal from which the program was started.
   filter.when(BPF_JEQ, SYS_ioctl, 5);
   filter.load(argument(1));
   filter.unless(BPF_JEQ, TIOCSTI, 2);
