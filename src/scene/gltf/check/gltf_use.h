@@ -1,5 +1,5 @@
 // What the active scene of a glTF file reaches, and so what of a file can be wrong without harm. Used by the importer
-// alone.
+// and by make_look_document(), which looks up glTF's arrays by section.
 #pragma once
 #include <array>
 #include <string_view>

@@ -26,7 +26,7 @@ struct DracoUse {
   std::size_t indices;                              // accessor
 };
 
-/// A file may name attributes of its own, of any type.
+/// Whether relook may read an attribute: a file may name attributes of its own ("_NAME"), of any type.
 bool is_readable(const std::string& name, const GltfAccessor& accessor) {
   return !name.starts_with('_') && accessor.width >= 1 && accessor.width <= 4;
 }
