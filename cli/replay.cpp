@@ -27,7 +27,7 @@ void check_steps(const Arguments& arguments, const Journal& journal) {
                      " steps of " + journal.file);
 }
 
-/// Of what --params names, each.
+/// A set of parameters for each pointer of --params.
 std::vector<ParameterSet> chosen_parameters(SceneState& state, const std::vector<std::string>& pointers) {
   std::vector<ParameterSet> sets;
   for (const std::string& pointer : pointers) sets.push_back(parameters_at(state, pointer));
@@ -70,7 +70,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
   return std::make_unique<Residency>(std::move(options));
 }
 
-/// For another run from the same state.
+/// A copy of the opened cache, for another run from the same state.
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
   return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()),

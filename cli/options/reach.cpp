@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
-/// Without a slash at the end: its parent is the folder that it lies in.
+/// The absolute path without a slash at the end, so that its parent is the folder that it lies in.
 fs::path full_path(const fs::path& path) {
   std::error_code ignored;
   const fs::path full = fs::absolute(path, ignored);
   return full.has_filename() ? full : full.parent_path();
 }
 
-/// With links followed, as far as it is there.
+/// The absolute path with links followed, as far as it is there.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   const fs::path known = fs::weakly_canonical(full_path(path), error);

@@ -57,7 +57,8 @@ void RunPlan::look_into_folder() {
                                                     "\" is not relook's; nothing is replaced");
 }
 
-/// What may stay and what not.
+/// Decides what of the run that is there may stay. Throws UsageError when something may not and --overwrite is not
+/// given.
 void RunPlan::judge_run() {
   const bool has_nothing = ledger_->source().is_null() && ledger_->notes().empty() && !is_there(folder_ / kReportName);
   if (has_nothing) return;  // killed as it began
@@ -120,7 +121,7 @@ void RunPlan::require_known_files() const {
   }
 }
 
-/// Of this command's wishes: is what was made enough?
+/// Whether an entry has the overlays, the exposure and the verification that this command asks for.
 bool RunPlan::is_enough(const Json& entry) const {
   if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
   if (entry.at("exposure").get<double>() != arguments_.exposure) return false;
@@ -269,7 +270,7 @@ void RunPlan::count_kept() {
                  (arguments_.report == ReportKind::none || has_whole_report);
 }
 
-/// What the source says as well.
+/// Whether the head of a report says of resolution, samples, scene and depth what the source says.
 bool RunPlan::has_true_head(const Json& head) const {
   try {
     const JsonView view(head, kReportName), resolution = view.at("resolution");
