@@ -36,8 +36,8 @@ class Console {
 
   /// A line of a result; nothing with --quiet or --json.
   void line(std::string_view text);
-  /// A line that says how the work goes, one step done; nothing with --quiet. On stdout, or on stderr where stdout is a
-  /// pipe, a socket, or for --json; with --log-json an object on stderr.
+  /// A line that says how the work goes, one step done; nothing with --quiet, nor with --json beside --progress none.
+  /// On stdout, or on stderr where stdout is a pipe, a socket, or for --json; with --log-json an object on stderr.
   void log_line(std::string_view text);
   /// The result as JSON; nothing without --json.
   void json(const Json& result);

@@ -1,5 +1,5 @@
-// Which tunnels preprocess writes (paper 3.4): as many as the limit allows, by tile, and what a replay says of those that
-// it does not read.
+// Which tunnels preprocess writes (paper 3.4): as many as the limit allows, by tile, and what a replay says of those
+// that it does not read.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Rows of the paper's Table 1 as edits, and steps through them, each against a full render and a fresh preprocess of the
-// edited scene.
+// Rows of the paper's Table 1 as edits, and steps through them, each against a full render and a fresh preprocess of
+// the edited scene.
 #pragma once
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
-// Meshes of Draco data: what comes out is what was put in, whatever the file has beside it; damage and greed are refused
-// with their place.
+// Meshes of Draco data: what comes out is what was put in, whatever the file has beside it; damage and greed are
+// refused with their place.
 #include <gtest/gtest.h>
 
 #include "packed_meshes.h"
