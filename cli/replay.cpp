@@ -231,7 +231,7 @@ ExitCode run_replay(const Arguments& given, Console& console) {
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, previews.view.get());
   for (const RunPlan& plan : plans) console.warn(plan.warnings());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
-  // Also for runs that are complete: the cache and the journals must be as the command says.
+  // The cache is opened for complete runs, too: it and the journals must be as the command says.
   ReplayCommand command(arguments, console, journals, plans, manifest, previews);
   std::uint64_t pixels_different = 0;
   Json runs = Json::array();

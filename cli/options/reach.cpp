@@ -102,7 +102,8 @@ bool has_names_of_cache(const fs::path& folder) {
   return false;
 }
 
-/// Of the folders above an output those that may be a cache or a run, in which it must not be.
+/// Adds the folders above an output that may be a cache or a run: an output must not lie in one, so the program looks
+/// whether they are.
 void add_owners(const fs::path& output, Paths& readable) {
   for (fs::path folder = resolved(output).parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     if (has_names_of_cache(folder)) readable.push_back(folder);

@@ -44,7 +44,7 @@ class JournalRun {
   /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different, in frames
   /// that were kept, too.
   std::uint64_t run(std::size_t place, std::size_t runs);
-  /// After run().
+  /// Hands over the replayer. To be called after run().
   [[nodiscard]] Replayer take_replayer() { return std::move(replayer_); }
 
  private:

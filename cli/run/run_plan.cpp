@@ -101,7 +101,7 @@ std::optional<std::string> RunPlan::other_journal() const {
   return std::nullopt;
 }
 
-/// Before a whole run is replaced: every file in its folder is one that relook has written.
+/// Before a whole run is replaced: throws UsageError unless every file in its folder is one that relook has written.
 void RunPlan::require_known_files() const {
   const auto refuse = [](const std::filesystem::path& path) {
     throw UsageError(path.string(), "is not relook's: a run with other files in its folder is not replaced");
@@ -234,7 +234,8 @@ bool RunPlan::sums_up(std::uint32_t step, const Json& whole) const {
   return whole.at("class") == change_class_name(change);
 }
 
-/// Also finds what is in the way of frames that are to be made.
+/// Counts the frames that are kept, and finds whether the run is complete. Throws UsageError for what is in the way of
+/// frames that are to be made.
 void RunPlan::count_kept() {
   frames_ = kept_frames_ = 0;
   bool has_all_in_report = ledger_ && ledger_->has_whole_report();
@@ -356,7 +357,8 @@ bool RunPlan::has_other_names() const {
   });
 }
 
-/// Of this journal, under the names that its frames have now: a hundredth frame gives those of its step another digit.
+/// The entries of this journal whose frames have the names of now: a hundredth frame gives those of its step another
+/// digit.
 std::vector<Json> RunPlan::entries_to_stay() const {
   std::vector<Json> entries;
   for (const auto& [key, note] : ledger_->notes()) {

@@ -43,7 +43,7 @@ class Console {
   void json(const Json& result);
   /// Text that was asked for as it is, whatever --quiet and --json say.
   void print(std::string_view text);
-  /// After the work: throws IoError when not all could be written to stdout.
+  /// To be called after the work: throws IoError when not all could be written to stdout.
   void finish();
   void warn(const std::vector<std::string>& warnings);
   /// The lines on stderr for what ended the program; with --progress openjd the first is also said to the render

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 /// finite doubles, and trailing text. Throws InputError{file, "byte N" or pointer, ...}.
 [[nodiscard]] Json parse_json(std::string_view text, std::string_view file);
 
-/// As text, in one line or with an indent; bytes that are not UTF-8, as in the names of files, are replaced.
+/// JSON as text, in one line or with an indent; bytes that are not UTF-8, as in the names of files, are replaced.
 [[nodiscard]] std::string json_text(const Json& value, int indent = -1);
 
 /// One token of a JSON pointer, escaped ("~" to "~0", "/" to "~1").

@@ -44,7 +44,7 @@ DracoUse use_of(const JsonView& place, const JsonView& packed, const GltfModel& 
   return use;
 }
 
-/// By buffer view, in the order of the primitives.
+/// The primitives that name Draco data, by buffer view, in their order.
 std::map<std::size_t, std::vector<DracoUse>> uses_of(const JsonView& root, GltfModel& model) {
   std::map<std::size_t, std::vector<DracoUse>> uses;
   for_each_object(root, "meshes", [&](const JsonView& mesh, std::size_t m) {
