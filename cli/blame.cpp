@@ -26,8 +26,8 @@ struct RunSource {
   std::string cache;
 };
 
-/// A file or folder of the run: where the command line says, as the report names it, or where it was relative to the
-/// run, and absolute. Throws InputError that names the option.
+/// A file or folder of the run: where the command line says; else the first that is there of where it was relative to
+/// the run, where it was absolutely, and the report's own name for it. Throws InputError that names the option.
 std::string find_part(const JsonView& report, const std::string& run, const std::string& given, const char* part,
                       const JsonView& name) {
   if (!given.empty()) return given;

@@ -1,3 +1,4 @@
+// `relook check`: reads every file of a cache, its tunnels against its ray trees, and prints what is wrong.
 #include "cache/cache_names.h"
 #include "image/cached_image.h"
 #include "image/cached_tunnels.h"

@@ -1,3 +1,4 @@
+// `relook compare`: frames or runs against the first one, printed and, if asked for, as JSON and as a page.
 #include <algorithm>
 #include <array>
 

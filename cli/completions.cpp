@@ -1,4 +1,5 @@
-// Completions for shells, made from the command line's own description.
+// `relook completions`: scripts that complete command lines in bash, zsh and fish, made from the command line's own
+// description.
 #include "verbs.h"
 
 namespace relook {

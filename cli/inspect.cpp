@@ -1,3 +1,4 @@
+// `relook inspect`: what a scene, cache, journal or run holds; with --look the look document of a scene or cache.
 #include <filesystem>
 
 #include "base/system/standard_input.h"
@@ -122,7 +123,7 @@ void inspect_run(const Arguments& arguments, Console& console) {
   console.json(report);
 }
 
-/// The look document itself goes to stdout, whatever --json says; --quiet is for other verbs.
+/// Prints the look document itself to stdout, whatever --json and --quiet say.
 void print_look(const Arguments& arguments, Kind kind, Console& console) {
   const std::string& input = arguments.inputs[0];
   if (kind != Kind::scene && kind != Kind::cache)
@@ -140,7 +141,7 @@ void print_look(const Arguments& arguments, Kind kind, Console& console) {
   console.print(json_text(look, 2) + "\n");
 }
 
-/// A view, and a patch, are of a scene.
+/// Throws UsageError for options of a view, or a patch, beside an input that is no scene.
 void require_view_of_scene(const Arguments& arguments, Kind kind) {
   const bool has_scene = !arguments.scene.empty();
   const std::string& seen = has_scene ? arguments.scene : arguments.inputs[0];

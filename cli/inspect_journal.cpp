@@ -102,7 +102,7 @@ void list_steps(const Journal& journal, JsonOutput& output, Console& console) {
   }
 }
 
-/// Each with its class.
+/// Lists all frames of a journal, each with its class.
 void list_frames(const Journal& journal, SceneState& state, JsonOutput& output, Console& console) {
   follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
     console.check_interrupt();

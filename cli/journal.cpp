@@ -76,7 +76,8 @@ DiffDraft make_draft(const Arguments& arguments, const SceneState& state, Consol
   return {draft_wedge(arguments.inputs[1], {arguments.inputs.begin() + 2, arguments.inputs.end()}), {}};
 }
 
-/// Files that a journal brings in. Those that were not there before go again unless they are kept.
+/// Writes the files that a journal brings in. Those that were not there before are removed again unless keep() is
+/// called.
 class BroughtFiles {
  public:
   BroughtFiles() = default;

@@ -65,7 +65,7 @@ int guarded(const Work& work, const Report& report) {
   }
 }
 
-/// Others read, and write a small file in the end, if any.
+/// Whether a verb makes frames; others read, and write a small file in the end, if any.
 bool makes_pictures(Verb verb) { return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay; }
 
 /// RELOOK_SANDBOX=off is for debuggers and tools that trace, start programs or write files of their own.

@@ -1,3 +1,4 @@
+// `relook preprocess`: renders a scene and writes the cache from which replays start.
 #include <optional>
 
 #include "base/system/memory.h"

@@ -1,3 +1,4 @@
+// `relook render`: a frame (.exr) or preview (.png) of a scene, after the steps of a journal if one is given.
 #include "image/render.h"
 
 #include <functional>

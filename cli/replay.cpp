@@ -27,7 +27,7 @@ void check_steps(const Arguments& arguments, const Journal& journal) {
                      " steps of " + journal.file);
 }
 
-/// Of what --params names, each.
+/// A set of parameters for each pointer of --params.
 std::vector<ParameterSet> chosen_parameters(SceneState& state, const std::vector<std::string>& pointers) {
   std::vector<ParameterSet> sets;
   for (const std::string& pointer : pointers) sets.push_back(parameters_at(state, pointer));
@@ -70,7 +70,7 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
   return std::make_unique<Residency>(std::move(options));
 }
 
-/// For another run from the same state.
+/// A copy of the opened cache, for another run from the same state.
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
   return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()),
@@ -231,7 +231,7 @@ ExitCode run_replay(const Arguments& given, Console& console) {
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, previews.view.get());
   for (const RunPlan& plan : plans) console.warn(plan.warnings());
   if (!arguments.access_log.empty()) write_file(arguments.access_log, kAccessLogHeader);  // found out before the work
-  // Also for runs that are complete: the cache and the journals must be as the command says.
+  // The cache is opened for complete runs, too: it and the journals must be as the command says.
   ReplayCommand command(arguments, console, journals, plans, manifest, previews);
   std::uint64_t pixels_different = 0;
   Json runs = Json::array();

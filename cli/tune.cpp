@@ -1,4 +1,4 @@
-// What each eviction policy and budget would have cost a replay, from its access log.
+// `relook tune`: what each eviction policy and budget would have cost a replay, from its access log.
 #include <cstdio>
 
 #include "cache/residency/access_log.h"

@@ -1,4 +1,5 @@
-# Sourced by demo.sh and the scripts in ../tests from the project's root: installs what is missing (Debian 12), configures, builds.
+# Sourced from the project's root by demo.sh and by the scripts in ../tests. Gives install_packages, which installs
+# those of $packages that are missing (Debian 12), and build and build_preset, which configure and build targets.
 
 # openimageio-tools: OpenImageIO's CMake files refuse to load without its programs.
 packages="g++ cmake make pkg-config python3 libembree-dev libopenimageio-dev openimageio-tools openexr libopenexr-dev \

@@ -1,8 +1,8 @@
 #!/bin/sh
 # sh tests/fuzz.sh SECONDS [TARGET...]: builds the fuzz targets (tests/fuzz/fuzz_targets.h; all, unless named) with
 # clang, AddressSanitizer and UndefinedBehaviorSanitizer, and runs each for SECONDS seconds, side by side on all cores,
-# from tests/fuzz/seeds.py and the kept corpus (tests/fuzz/corpus). Prints a line a target; exits 1 if anything was found.
-# Installs missing Debian packages first. Writes to build/ and to /dev/shm only. `sh tests/fuzz.sh keep [TARGET...]`
+# from tests/fuzz/seeds.py and the kept corpus (tests/fuzz/corpus). Prints a line a target; exits 1 if anything was
+# found. Installs missing Debian packages first. Writes to build/ and to /dev/shm only. `sh tests/fuzz.sh keep [TARGET...]`
 # instead takes into the kept corpus what runs have found that reaches other code; small files only.
 set -eu
 cd "$(dirname "$0")/.."

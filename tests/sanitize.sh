@@ -1,5 +1,6 @@
 #!/bin/sh
-# Builds relook and its tests with a sanitizer and runs every test: sh tests/sanitize.sh address|thread [CTEST OPTION...]
+# sh tests/sanitize.sh address|thread [CTEST OPTION...]: builds relook and its tests with a sanitizer and runs every test.
+# Installs missing Debian packages first. Writes to build/ and to the folder for temporary files only.
 # address: AddressSanitizer and UndefinedBehaviorSanitizer (build/asan); thread: ThreadSanitizer (build/tsan).
 # Any report is a failure: of a test, or, where a test expects its program to fail, of this script.
 set -eu

@@ -11,7 +11,7 @@
 
 namespace relook {
 
-/// 2 missing or not a cache; 3 it does not fit; 5 damaged; 6 not permitted to read it.
+/// 0 without a fault; 2 missing or not a cache; 3 it does not fit; 5 damaged; 6 it cannot be read.
 [[nodiscard]] ExitCode exit_code(CacheFault fault);
 /// Throws Error unless the answer is `none`.
 void require_sound(const CacheAnswer& answer, const std::string& cache);
@@ -20,9 +20,9 @@ void require_sound(const CacheAnswer& answer, const std::string& cache);
 /// Refuses any damage.
 [[nodiscard]] CacheContent load_cache(const std::string& cache);
 
-/// With what was damaged or missing traced again; refuses only damage that cannot be made good.
+/// The cache with what was damaged or missing traced again; refuses only damage that cannot be made good.
 [[nodiscard]] CacheContent load_mended_cache(const std::string& cache);
-/// As a replay starts from it. `mends`, `residency`: see image/cached_image.h.
+/// The cache as a replay starts from it. `mends`, `residency`: see image/cached_image.h.
 [[nodiscard]] OpenedCache open_cache(const std::string& cache, bool mends, Residency* residency = nullptr);
 /// One sentence a file.
 [[nodiscard]] std::vector<std::string> sentences(const CacheLosses& losses);

@@ -80,7 +80,7 @@ std::vector<std::string> choices_of(const CLI::Option& option) {
   return choices;
 }
 
-/// "plan CACHE JOURNAL --json FILE", too: the third word.
+/// Takes FILE of "plan CACHE JOURNAL --json FILE", the third word, as if it were written --json=FILE.
 void resolve_plan(const RawTexts& raw, Arguments& arguments) {
   const bool has_file = arguments.inputs.size() > 2;
   if (has_file && raw.json != "-") throw UsageError("CACHE JOURNAL: " + arguments.inputs[2] + " is one too many");
@@ -89,7 +89,7 @@ void resolve_plan(const RawTexts& raw, Arguments& arguments) {
   if (!raw.json.empty() && raw.json != "-") arguments.json_file = raw.json;
 }
 
-/// "--json FILE.json", too: the word after --json, which is neither a frame nor a folder.
+/// Takes the word after "--json", a .json file and so neither a frame nor a folder, as if it were written --json=FILE.
 void take_json_file(const RawTexts& raw, Arguments& arguments) {
   if (raw.json.empty()) return;
   arguments.json_file = raw.json == "-" ? "" : raw.json;

@@ -64,7 +64,7 @@ struct Arguments {
   bool overwrite = false;  // replace another run or cache, or a single foreign file, that is in the way
   std::string trace;       // file, or ""
 
-  std::string journal;                // render
+  std::string journal;                // render; blame: see `cache`
   std::optional<std::uint32_t> step;  // render
   bool float_frames = false;          // render, replay
   bool layers = false;                // render, replay: --aovs
@@ -80,7 +80,7 @@ struct Arguments {
   std::string access_log;                 // replay: file, or ""
   bool print_look = false;                // inspect
   std::vector<std::string> view_options;  // inspect: those of VIEW that were given, as "--camera"
-  std::string scene;                      // inspect, replay, check
+  std::string scene;                      // inspect, replay
 
   Thresholds thresholds;                               // compare
   DisplayWhite white;                                  // compare: --peak
@@ -89,7 +89,7 @@ struct Arguments {
   std::string html;                                    // compare: file, or ""
   JournalSource journal_source = JournalSource::diff;  // journal; the rest: of an animation
   SampleTimes sample_times;
-  std::string animation;  // name or number; "": the first
+  std::string animation;  // name or number; "": the first, with a warning if there are several
 };
 
 /// The arguments, or what to print instead (--help, --version). Throws UsageError.

@@ -30,7 +30,7 @@ void require_match(const CacheAnswer& answer, const std::string& output) {
   throw UsageError(output, words_of(answer) + "; --overwrite replaces it");
 }
 
-/// As far as match_cache() looks at it.
+/// The cache that is asked for, as far as match_cache() looks at it.
 CacheContent wanted_cache(const Arguments& arguments, Console& console) {
   LoadedDocument loaded = load_document(arguments.inputs[0], arguments.view);
   CacheContent wanted;

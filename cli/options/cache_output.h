@@ -12,9 +12,9 @@ namespace relook {
 /// What the cache is to hold beside what always is there.
 [[nodiscard]] StorageOptions storage_options(const StructureOptions& structures);
 
-/// Of a cache that is at the output and is the one asked for, every file with its hash: its manifest. Nothing if the
-/// output is free, or may be replaced. Throws UsageError for all else that is there, IoError where it cannot be looked
-/// at.
+/// The manifest of a cache that is at the output already and is the one asked for, with every file of the right hash.
+/// None if the output is free, or may be replaced. Throws UsageError for all else that is there, IoError where it
+/// cannot be looked at.
 [[nodiscard]] std::optional<Json> finished_cache(const Arguments& arguments, Console& console);
 
 }  // namespace relook

@@ -23,7 +23,7 @@ struct NamedInput {
 
 /// Throws UsageError when `render` is to write neither a frame nor a preview.
 [[nodiscard]] std::vector<NamedOutput> outputs_of(const Arguments& arguments);
-/// Without standard input.
+/// The inputs that the command line names, without standard input.
 [[nodiscard]] std::vector<NamedInput> inputs_of(const Arguments& arguments);
 
 /// Whether `render` is to write a preview (.png), not a frame (.exr). Throws UsageError for any other suffix.

@@ -11,7 +11,7 @@ namespace {
 
 const auto kAnyApp = [](const CLI::App*) { return true; };
 
-/// "journal wedge", "replay": of the subcommand that was given.
+/// The verb that was given; `name` becomes "journal wedge", "replay".
 const CLI::App& given_verb(const CLI::App& app, std::string& name) {
   const CLI::App* verb = &app;
   while (!verb->get_subcommands().empty()) {
@@ -21,13 +21,13 @@ const CLI::App& given_verb(const CLI::App& app, std::string& name) {
   return *verb;
 }
 
-/// "--x", "-x", not "-", "--", "-1" and "-.5".
+/// Whether a word is an option: "--x" and "-x" are; "-", "--", "-1" and "-.5" are not.
 bool is_option(const std::string& word) {
   if (word.size() < 2 || word[0] != '-' || word == "--") return false;
   return word[1] != '.' && (word[1] < '0' || word[1] > '9');
 }
 
-/// Without its value.
+/// The option of a word, without a value that is written to it: "--x" of "--x=1", "-x" of "-x1".
 std::string option_of(const std::string& word) {
   return word.starts_with("--") ? word.substr(0, word.find('=')) : word.substr(0, 2);
 }

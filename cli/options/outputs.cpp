@@ -90,7 +90,7 @@ void check_file(const NamedOutput& output, bool overwrites) {
     refuse(output, "is part of the run " + run.string() + "; --overwrite replaces it");
 }
 
-/// What a run has for itself in its folder.
+/// Whether a path has one of the names that a run has for itself in its folder.
 bool is_reserved(const std::filesystem::path& path, const std::filesystem::path& folder) {
   constexpr std::array<std::string_view, 7> kNames{kReportName, "report.html", kProgressName, "frames",
                                                    "previews",  "overlays",    "pixels"};

@@ -9,7 +9,7 @@
 
 namespace relook {
 
-/// Before any work. Throws UsageError.
+/// Checks all outputs that the command line names; to be called before any work. Throws UsageError.
 void check_outputs(const Arguments& arguments);
 
 /// For inputs that only become known while others are read, such as the images of a scene. `what`: "a file of the

@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
-/// Without a slash at the end: its parent is the folder that it lies in.
+/// The absolute path without a slash at the end, so that its parent is the folder that it lies in.
 fs::path full_path(const fs::path& path) {
   std::error_code ignored;
   const fs::path full = fs::absolute(path, ignored);
   return full.has_filename() ? full : full.parent_path();
 }
 
-/// With links followed, as far as it is there.
+/// The absolute path with links followed, as far as it is there.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
   const fs::path known = fs::weakly_canonical(full_path(path), error);
@@ -102,7 +102,8 @@ bool has_names_of_cache(const fs::path& folder) {
   return false;
 }
 
-/// Of the folders above an output those that may be a cache or a run, in which it must not be.
+/// Adds the folders above an output that may be a cache or a run: an output must not lie in one, so the program looks
+/// whether they are.
 void add_owners(const fs::path& output, Paths& readable) {
   for (fs::path folder = resolved(output).parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     if (has_names_of_cache(folder)) readable.push_back(folder);

@@ -16,7 +16,7 @@ namespace relook {
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_resolution(std::string_view option, std::string_view text);
 /// "120,45": a pixel, column and row.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_pixel(std::string_view option, std::string_view text);
-/// "50" or "50%": low < value <= 100 or, with `zero`, low <= value.
+/// "50" or "50%": 0 < value <= 100 or, with `zero_allowed`, 0 <= value <= 100.
 [[nodiscard]] double parse_percent(std::string_view option, std::string_view text, bool zero_allowed);
 
 /// "3", "2-5", "4-": first <= last.

@@ -27,7 +27,7 @@ void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   verb.add_option("--trace", arguments.trace, "File to write: what took how long, for Perfetto (Chrome trace events)");
 }
 
-/// Of verbs that read scenes or journals.
+/// Adds --root and --strict-gltf, for verbs that read scenes or journals.
 void add_import_rules(CLI::App& verb, Arguments& arguments) {
   verb.add_option("--root", arguments.import.roots,
                   "Folder whose files scenes and journals may name, like a library of textures; may be repeated")
@@ -48,7 +48,7 @@ CLI::Option* add_lights(CLI::App& verb, RawTexts& raw, const char* help = "auto:
   return verb.add_option("--lights", raw.lights, help)->check(CLI::IsMember({"auto"}));
 }
 
-/// The options that it adds.
+/// Adds the VIEW options but --look, and returns them.
 std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   ViewArguments& view = arguments.view;
   const auto before = static_cast<std::ptrdiff_t>(verb.get_options().size());

@@ -49,7 +49,7 @@ class PagePixels {
   /// The tiles of the last entry taken that differ from the frame that the page had before it, as runs: [first, count,
   /// ...].
   [[nodiscard]] const std::vector<std::size_t>& last_tiles() const { return last_tiles_; }
-  /// For the last frame that the page has, the entry that each tile is from, as runs: [count, entry, ...].
+  /// The entries that the tiles of the last frame in the page are from, as runs: [count, entry, ...].
   [[nodiscard]] std::vector<std::size_t> sources() const;
   /// A small PNG file of the last entry taken.
   [[nodiscard]] Bytes thumbnail() { return run_.thumbnail(); }

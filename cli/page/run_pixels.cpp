@@ -116,7 +116,7 @@ void RunPixels::shrink(std::size_t tile) {
       for (std::uint32_t y = y0; y < std::min(y0 + shrink_, rect.y1); ++y) {
         for (std::uint32_t x = x0; x < std::min(x0 + shrink_, rect.x1); ++x, ++count) {
           const Rgba& pixel = pixels[std::size_t{y - rect.y0} * columns + x - rect.x0];
-          // As they are shown: one bright pixel is not to bleach its neighbours.
+          // Pixels count as they are shown, 1 at the most: one bright pixel is not to bleach its neighbours.
           sum.r += std::min(pixel.r * gain_, 1.0F);
           sum.g += std::min(pixel.g * gain_, 1.0F);
           sum.b += std::min(pixel.b * gain_, 1.0F);

@@ -328,7 +328,7 @@ void JournalRun::verify(StepReport& entry) {
   pixels_different_ += difference.pixels_different;
 }
 
-/// Of the first frames; print_summary() counts all.
+/// Warns of the first frames with pixels that half cannot hold; print_summary() counts all.
 void JournalRun::warn_of_clipping(const StepReport& entry) {
   constexpr std::size_t kMostSaid = 3;
   if (folder_.clipped_pixels() == 0 || ++clipped_frames_ > kMostSaid) return;

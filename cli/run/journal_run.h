@@ -27,7 +27,7 @@ struct CacheFacts {
   Moves rebuilt;  // what was damaged
 };
 
-/// Replays one journal into one run folder.
+/// One journal on its way into one run folder.
 class JournalRun {
  public:
   /// `residency`: null, or with which the cache was opened.
@@ -35,7 +35,7 @@ class JournalRun {
              std::unique_ptr<Residency> residency, const CacheFacts& cache,
              const PreviewStyle& previews);
 
-  /// Builds their colour trees; no others will be kept.
+  /// Builds the colour trees of these sets of parameters; no others will be kept.
   void choose_parameters(const std::vector<ParameterSet>& sets) {
     const TraceScope span = console_.span("colour trees of --params");
     replayer_.choose_parameters(sets);
@@ -44,7 +44,7 @@ class JournalRun {
   /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different, in frames
   /// that were kept, too.
   std::uint64_t run(std::size_t place, std::size_t runs);
-  /// After run().
+  /// Hands over the replayer. To be called after run().
   [[nodiscard]] Replayer take_replayer() { return std::move(replayer_); }
 
  private:

@@ -41,7 +41,7 @@ StepRanges ranges_of(const Json& parts, std::uint32_t steps) {
   return ranges;
 }
 
-/// Those that meet are one.
+/// The ranges in order; those that overlap or touch are one.
 StepRanges joined(StepRanges ranges) {
   std::ranges::sort(ranges);
   StepRanges result;
@@ -147,7 +147,7 @@ void RunFolder::note(StepReport step) {
   notes_.push_back(std::move(step));
 }
 
-/// Waits; then the files are known that entries lack.
+/// Waits until the last frame is written; then entries of it that wait as notes get the stamps of its files.
 void RunFolder::finish_writing() {
   if (writing_.valid()) writing_.get();
   for (StepReport& step : notes_)
@@ -159,7 +159,7 @@ void RunFolder::append_notes() {
   for (const StepReport& step : std::exchange(notes_, {})) progress_->append(step_json(step));
 }
 
-/// Those of this command, and those of others that are believed.
+/// Notes of this command, and notes of others that are believed.
 std::vector<std::pair<LedgerKey, RunLedger::Note>> RunFolder::sound_notes(const RunLedger& ledger) const {
   std::vector<std::pair<LedgerKey, RunLedger::Note>> notes;
   for (const auto& [key, note] : ledger.notes())
@@ -181,7 +181,7 @@ std::vector<std::pair<LedgerKey, RunLedger::Note>> RunFolder::sound_notes(const 
   return notes;
 }
 
-/// Whether all frames of the journal are in it.
+/// Writes report.json. Returns whether all frames of the journal are in it.
 bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   const RunLedger ledger(path_);
   noted_bytes_ = progress_->size_bytes();

@@ -46,7 +46,8 @@ class RunFolder {
   /// `layers`: the frame's scene, if it is to have layers; they are made here, which is part of seconds.write.
   void write_frame(StepReport& step, const Image& image, const FrameChange& change, FrameMeta meta,
                    const Scene* layers);
-  /// Of the frame last given to write_frame(): pixels that half cannot hold. 0 for layered frames' float32 parts.
+  /// The pixels of the frame last given to write_frame() that half cannot hold, layers aside; 0 where frames are
+  /// float32.
   [[nodiscard]] std::uint64_t clipped_pixels() const { return clipped_pixels_; }
   /// Writes overlays/<step>_<kind>.png: leaves that depend on the selection, leaves whose tunnels it may touch, groups.
   void write_overlays(StepReport& step, const Replayer& replayer, const StepResult& result);

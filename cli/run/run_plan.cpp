@@ -57,7 +57,8 @@ void RunPlan::look_into_folder() {
                                                     "\" is not relook's; nothing is replaced");
 }
 
-/// What may stay and what not.
+/// Decides what of the run that is there may stay. Throws UsageError when something may not and --overwrite is not
+/// given.
 void RunPlan::judge_run() {
   const bool has_nothing = ledger_->source().is_null() && ledger_->notes().empty() && !is_there(folder_ / kReportName);
   if (has_nothing) return;  // killed as it began
@@ -100,7 +101,7 @@ std::optional<std::string> RunPlan::other_journal() const {
   return std::nullopt;
 }
 
-/// Before a whole run is replaced: every file in its folder is one that relook has written.
+/// Before a whole run is replaced: throws UsageError unless every file in its folder is one that relook has written.
 void RunPlan::require_known_files() const {
   const auto refuse = [](const std::filesystem::path& path) {
     throw UsageError(path.string(), "is not relook's: a run with other files in its folder is not replaced");
@@ -120,7 +121,7 @@ void RunPlan::require_known_files() const {
   }
 }
 
-/// Of this command's wishes: is what was made enough?
+/// Whether an entry has the overlays, the exposure and the verification that this command asks for.
 bool RunPlan::is_enough(const Json& entry) const {
   if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
   if (entry.at("exposure").get<double>() != arguments_.exposure) return false;
@@ -233,7 +234,8 @@ bool RunPlan::sums_up(std::uint32_t step, const Json& whole) const {
   return whole.at("class") == change_class_name(change);
 }
 
-/// Also finds what is in the way of frames that are to be made.
+/// Counts the frames that are kept, and finds whether the run is complete. Throws UsageError for what is in the way of
+/// frames that are to be made.
 void RunPlan::count_kept() {
   frames_ = kept_frames_ = 0;
   bool has_all_in_report = ledger_ && ledger_->has_whole_report();
@@ -269,7 +271,7 @@ void RunPlan::count_kept() {
                  (arguments_.report == ReportKind::none || has_whole_report);
 }
 
-/// What the source says as well.
+/// Whether the head of a report says of resolution, samples, scene and depth what the source says.
 bool RunPlan::has_true_head(const Json& head) const {
   try {
     const JsonView view(head, kReportName), resolution = view.at("resolution");
@@ -355,7 +357,8 @@ bool RunPlan::has_other_names() const {
   });
 }
 
-/// Of this journal, under the names that its frames have now: a hundredth frame gives those of its step another digit.
+/// The entries of this journal whose frames have the names of now: a hundredth frame gives those of its step another
+/// digit.
 std::vector<Json> RunPlan::entries_to_stay() const {
   std::vector<Json> entries;
   for (const auto& [key, note] : ledger_->notes()) {

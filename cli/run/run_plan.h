@@ -35,7 +35,7 @@ class RunPlan {
   /// The steps whose frames are asked for; 0 is the frame before any.
   [[nodiscard]] std::uint32_t first_step() const { return first_; }
   [[nodiscard]] std::uint32_t last_step() const { return last_; }
-  /// Of a frame.
+  /// The samples of one frame.
   [[nodiscard]] std::uint64_t samples() const { return samples_; }
   [[nodiscard]] std::size_t frames() const { return frames_; }
   [[nodiscard]] std::size_t kept_frames() const { return kept_frames_; }
@@ -45,7 +45,7 @@ class RunPlan {
   /// Whether there is a sound entry for a drag or wedge as a whole, and all its frames. Requires: one of the steps
   /// asked for.
   [[nodiscard]] bool keeps_whole_step(std::uint32_t step) const;
-  /// Of all frames kept, what --verify found.
+  /// The number of pixels that --verify found different in all frames that are kept.
   [[nodiscard]] std::uint64_t pixels_different() const { return pixels_different_; }
   /// Whether there is nothing to do: all frames, and the report that is asked for, are there.
   [[nodiscard]] bool is_complete() const { return is_complete_; }
@@ -64,7 +64,8 @@ class RunPlan {
   /// What a killed command has left of report.html; in turn for the page.
   void remove_unfinished_page() const;
 
-  /// Of a drag or wedge as a whole: of its last frame. Requires: an entry of this journal.
+  /// The name of an entry's frame; a drag or wedge as a whole has that of its last frame. Requires: an entry of this
+  /// journal.
   [[nodiscard]] std::string frame_name_of(const LedgerKey& key) const;
   [[nodiscard]] LedgerKey key_of(std::uint32_t step, std::size_t frame) const;
   /// Whether an entry is of this journal, and whether it has a frame of its own: not one of a drag or wedge as a whole.

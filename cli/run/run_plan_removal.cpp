@@ -6,7 +6,8 @@
 
 namespace relook {
 
-/// With all steps locked. Files that relook has written, as frames of no step of this journal, or all of another run.
+/// Removes files that relook has written: frames of no step of this journal, or all files of another run. Requires: all
+/// steps are locked.
 void RunPlan::remove_replaced() const {
   std::set<std::string> stems;  // of frames that stay
   if (!replaces_all_)
@@ -35,7 +36,8 @@ void RunPlan::remove_unfinished_page() const {
     if (unfinished_name(file) == "report.html") remove_file(file);
 }
 
-/// Temporary files of commands that were killed at the steps that are locked now, or while they wrote report.json.
+/// Removes temporary files of commands that were killed at the steps that are locked now, or while they wrote
+/// report.json.
 void RunPlan::remove_leftovers() const {
   for (const RunPart& part : kRunParts)
     for (const std::filesystem::path& file : entries_not_beyond_link(folder_ / part.folder)) {

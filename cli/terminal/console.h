@@ -36,14 +36,14 @@ class Console {
 
   /// A line of a result; nothing with --quiet or --json.
   void line(std::string_view text);
-  /// A line that says how the work goes, one step done; nothing with --quiet. On stdout, or on stderr where stdout is a
-  /// pipe, a socket, or for --json; with --log-json an object on stderr.
+  /// A line that says how the work goes, one step done; nothing with --quiet, nor with --json beside --progress none.
+  /// On stdout, or on stderr where stdout is a pipe, a socket, or for --json; with --log-json an object on stderr.
   void log_line(std::string_view text);
   /// The result as JSON; nothing without --json.
   void json(const Json& result);
   /// Text that was asked for as it is, whatever --quiet and --json say.
   void print(std::string_view text);
-  /// After the work: throws IoError when not all could be written to stdout.
+  /// To be called after the work: throws IoError when not all could be written to stdout.
   void finish();
   void warn(const std::vector<std::string>& warnings);
   /// The lines on stderr for what ended the program; with --progress openjd the first is also said to the render

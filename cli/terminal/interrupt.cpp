@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSignalExitBase = 128;  // the shell's convention for "ended by a signal"
 
-/// Sent by the destructor, to the waiting thread only.
+/// The signal that the destructor sends to the waiting thread only.
 int stop_waiting() { return SIGRTMIN; }
 
 sigset_t watched_signals() {

@@ -38,7 +38,7 @@ class Interrupt {
    private:
     std::atomic<int>& count_;
   };
-  /// What is to be said then.
+  /// Sets what is called before the process ends so.
   void set_last_words(std::function<void(int signal)> last_words) {
     const std::lock_guard lock(mutex_);
     last_words_ = std::move(last_words);

@@ -38,7 +38,7 @@ struct InputError : Error {
 };
 struct UsageError : Error {
   explicit UsageError(std::string_view what) : Error(ExitCode::usage, "", "", what) {}
-  /// Something is where an output is to go, or is an input itself.
+  /// `file`: something that is where an output is to go, or is an input itself.
   UsageError(std::string_view file, std::string_view what) : Error(ExitCode::usage, file, "", what) {}
 };
 struct IoError : Error {

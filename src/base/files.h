@@ -37,8 +37,8 @@ struct MissingFileError : InputError {
 };
 
 /// Resolves a file name (a URI, already percent-decoded; "a/../b" is "b", RFC 3986 section 5.2.4) to a file below
-/// `folder` or one of `roots`, followed through symbolic links: no name and no link leads elsewhere. Absolute names
-/// only below roots. Throws InputError{file, where, ...}, MissingFileError.
+/// `folder` or one of `roots`, followed through symbolic links: no name and no link leads elsewhere. An absolute name
+/// must lie below a root. Throws InputError{file, where, ...}, MissingFileError.
 [[nodiscard]] std::filesystem::path contained_path(const std::filesystem::path& folder,
                                                    std::span<const std::filesystem::path> roots, std::string_view uri,
                                                    std::string_view file, std::string_view where);

@@ -1,4 +1,4 @@
-// XXH3 behind two functions.
+// XXH3 of bytes and of files.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -10,7 +10,7 @@
 namespace relook {
 namespace {
 
-/// The process's: what is unpacked fills one memory, whichever scene it is of.
+/// The budget belongs to the process: what is unpacked fills one memory, whichever scene it is of.
 struct Budget {
   std::mutex mutex;
   std::uint64_t limit = kImportMemory, used = 0, working = 0;

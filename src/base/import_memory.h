@@ -1,5 +1,5 @@
-// What the files of scenes and caches may unpack to: one budget of the process for images and geometry alike, in the
-// format that is kept, asked before memory is.
+// What the files of scenes and caches may unpack to: one budget of the process for images, geometry and animations
+// alike, in bytes of the format that is kept. The budget is asked before memory is.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -10,7 +10,7 @@ namespace relook {
 
 inline constexpr std::uint64_t kImportMemory = std::uint64_t{2} << 30;  // bytes, unless told otherwise
 
-/// Bytes; to be called while nothing is read. What decoders held until then counts no longer.
+/// Sets the budget; to be called while nothing is read. What decoders held until then counts no longer.
 void set_import_memory(std::uint64_t bytes);
 
 /// A part of the budget, given back when it goes.

@@ -87,7 +87,7 @@ class Builder : public nlohmann::json_sax<Json> {
     if (items.empty()) items.reserve(kUsualItems);
     return &items.emplace_back(std::move(value));
   }
-  /// At the value being read.
+  /// Throws InputError with the pointer to the value that is being read.
   [[noreturn]] void fail(std::string_view what) const {
     std::string pointer;
     for (std::size_t i = 0; i < stack_.size(); ++i) {

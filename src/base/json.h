@@ -1,5 +1,5 @@
-// Strict JSON: scanned for depth, size and duplicate keys before it is built, and read through one reader that checks
-// type, range and finiteness and names the place in every error.
+// Strict JSON: depth, number of values and duplicate keys are checked as the text is read, before a value is kept, and
+// values are read through one view that checks type, range and finiteness and names the place in every error.
 #pragma once
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 /// finite doubles, and trailing text. Throws InputError{file, "byte N" or pointer, ...}.
 [[nodiscard]] Json parse_json(std::string_view text, std::string_view file);
 
-/// As text, in one line or with an indent; bytes that are not UTF-8, as in the names of files, are replaced.
+/// JSON as text, in one line or with an indent; bytes that are not UTF-8, as in the names of files, are replaced.
 [[nodiscard]] std::string json_text(const Json& value, int indent = -1);
 
 /// One token of a JSON pointer, escaped ("~" to "~0", "/" to "~1").

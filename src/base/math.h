@@ -17,7 +17,7 @@ using Color = Imath::C3f;  // linear RGB
 using Rgba = Imath::C4f;   // linear RGB, coverage
 using Transform = Imath::M44f;
 using Box = Imath::Box3f;
-// In the world, where floats would not do.
+// Places and boxes in the world, where floats would not do.
 using WidePoint = Imath::V3d;
 using WideBox = Imath::Box3d;
 

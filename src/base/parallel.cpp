@@ -17,13 +17,13 @@
 namespace relook {
 namespace {
 
-// TBB's limit lives as long as this object: the one piece of state that belongs to the process.
+// TBB's limit on threads lives as long as this object, which belongs to the process.
 std::unique_ptr<tbb::global_control>& limit() {
   static std::unique_ptr<tbb::global_control> control;
   return control;
 }
 
-// What may interrupt loops is the process's, too; that it may not is a thread's.
+// The signal that interrupts loops belongs to the process, too; that nothing may interrupt them belongs to a thread.
 std::atomic<const std::atomic<int>*> interruption = nullptr;
 thread_local bool is_uninterrupted = false;
 

@@ -1,7 +1,7 @@
-// RELOOK_VECTOR_CLONES before a function: one body, compiled for several instruction sets, chosen when the program
-// starts. Lane-wise IEEE arithmetic without contraction gives the same bits on all of them. A macro because the
-// attribute exists for some compilers and processors only; sanitizers instrument the choosing itself, too early in the
-// program's life.
+// RELOOK_VECTOR_CLONES before a function: one body, compiled for several instruction sets, of which one is chosen when
+// the program starts. Lane-wise IEEE arithmetic without contraction gives the same bits on all of them. It is a macro
+// because the attribute exists for some compilers and processors only; sanitizers instrument the choosing itself, too
+// early in the program's life.
 #pragma once
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \

@@ -12,24 +12,24 @@ namespace relook {
 enum class ChangeClass : std::uint8_t { base, color, optical, geometric, mixed };
 [[nodiscard]] std::string_view change_class_name(ChangeClass change);
 
-/// What a step does and why it has its class (Table 1 of the paper).
+/// The class of a step (Table 1 of the paper), and why it has it.
 struct Classification {
   ChangeClass change = ChangeClass::color;
   std::vector<std::string>
       reasons;  // one sentence per changed entity: "material Glass: index of refraction 1.5 -> 1.8"
 };
 
-/// The class of several edits together, by the rule of classify(): that of a drag's release.
+/// The class of two edits together, by the rule of classify(). A drag or a wedge as a whole has that of all its frames.
 [[nodiscard]] ChangeClass combined(ChangeClass a, ChangeClass b);
 
-/// The class follows from the values before and after alone. A delta that changes nothing is `color`. Both an optical
-/// (or colour) and a geometric change in one delta: `mixed` only if optical and geometric both occur; otherwise the
-/// strongest of color < optical < geometric.
+/// The class follows from the values before and after alone. A delta that changes nothing is `color`. A delta with an
+/// optical and a geometric change is `mixed`; every other has the strongest class of its changes, color < optical <
+/// geometric.
 [[nodiscard]] Classification classify(const Scene& after, const SceneDelta& delta);
 
 /// Applies one edit atomically. On any error the state is as before and InputError{file, where + "/path", ...} is
-/// thrown. `folder`: where {"asset": ...} and image uris are resolved. `camera_node` and its ancestors may not be
-/// edited.
+/// thrown. `folder`: where {"asset": ...} and image uris are resolved. The node of the active camera may not be edited,
+/// and its ancestors may not be moved, hidden or removed.
 SceneDelta apply_edit(SceneState& state, const Edit& edit, std::string_view file, const std::filesystem::path& folder);
 
 /// A drag's entry may only touch nodes of the step's selection and their descendants, and may not add or remove nodes.

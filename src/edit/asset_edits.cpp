@@ -1,4 +1,5 @@
-// Files that an edit brings in: images by uri, glTF assets under a new node. All lie below the journal's own folder.
+// Files that an edit brings in: images by uri, glTF assets under a new node. All lie below the journal's own folder or
+// one of the roots (scene/gltf/import_rules.h).
 #include <map>
 
 #include "base/hash.h"

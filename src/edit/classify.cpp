@@ -33,7 +33,7 @@ std::vector<MeshId> meshes_with(const Scene& scene, MaterialId material) {
   return meshes;
 }
 
-/// On a mesh.
+/// The class of a change of a material on one mesh.
 ChangeClass class_of(const Material& before, const Material& after, const Mesh& mesh) {
   return class_of(effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh)));
 }
@@ -83,7 +83,7 @@ std::string describe_deformation(const Object& before, const Object& after) {
   return old.joints == now.joints ? "morph weights changed" : "its joints are transformed";
 }
 
-/// Of an object that is moved in the sense of ObjectEffect.
+/// What a report says of an object that is moved in the sense of ObjectEffect, after its name.
 std::string describe_move(const Object& before, const Object& after) {
   if (before.alive != after.alive) return after.alive ? " appears" : " disappears";
   if (before.mesh != after.mesh) return ": another mesh";

@@ -8,7 +8,7 @@
 
 namespace relook {
 
-/// Of an object.
+/// What a change of one object does.
 struct ObjectEffect {
   bool moved = false;     // hits on the object are not valid any more; it may be met elsewhere
   bool shadows = false;   // it blocks or filters light differently (moved objects too)
@@ -17,11 +17,12 @@ struct ObjectEffect {
 /// Geometric where it is moved, optical where rays leave otherwise (whatever filters light otherwise spawns otherwise).
 [[nodiscard]] ChangeClass class_of(const ObjectEffect& effect);
 
-/// Of another material, or of other values of its material, on an object whose mesh makes these optics of them.
+/// The effect of another material, or of other values of its material, on an object whose mesh makes these optics of
+/// them.
 [[nodiscard]] ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_before, const Material& after,
                                      const SurfaceOptics& optics_after,
                                      std::span<const MaterialRow> rows = material_rows());
-/// Of all else about an object.
+/// The effect of all else that has changed about an object: everything but its material.
 [[nodiscard]] ObjectEffect effect_of(const Object& before, const Object& after);
 
 struct LightEffect {

@@ -23,8 +23,8 @@ struct PatchOperation {
 };
 using Edit = std::vector<PatchOperation>;
 
-/// One parameter, one value a frame; the last stays. A frame's edit is made when it is asked for: a wedge takes the
-/// memory of its text, whatever its count.
+/// One parameter, one value a frame; the last value stays in the scene. A frame's edit is made when it is asked for: a
+/// wedge takes the memory of its text, whatever its count.
 struct Wedge {
   std::string path;
   std::vector<Json> values;  // empty for a range
@@ -47,19 +47,19 @@ struct JournalStep {
   std::string name;
   Edit edit;                        // empty for a drag and a wedge
   std::vector<std::string> select;  // drag: "/nodes/<name>" pointers
-  std::vector<Edit> drag;           // one intermediate frame each; the last is committed
+  std::vector<Edit> drag;           // one frame each; where the last one puts the selection it stays
   Wedge wedge;
   std::string where;  // "/steps/3"
 
   [[nodiscard]] StepForm form() const;
-  /// How many there are; of an edit one.
+  /// The number of frames; 1 for an edit.
   [[nodiscard]] std::size_t frames() const;
   /// The edit that leads to a frame, from 0, from the one before; made when it is asked for.
   [[nodiscard]] Edit edit_of(std::size_t frame) const;
 };
 
 struct Journal {
-  std::filesystem::path path;  // where it was read; assets and images it names lie below its folder
+  std::filesystem::path path;  // where it was read; assets and images it names lie below its folder or a --root
   std::string file;            // as named by the user, for messages
   std::string name;            // file name without extension: safe as one component of a path, at most 200 bytes
   std::string text;            // its bytes
@@ -67,7 +67,7 @@ struct Journal {
   std::vector<JournalStep> steps;
 };
 
-/// Of all steps together, the one before any edit aside.
+/// The frames of all steps together, without the frame before any edit.
 [[nodiscard]] std::size_t frame_count(const Journal& journal);
 
 /// A file or, as "-", standard input. Throws InputError{file, pointer, ...} for the file as a whole, InputErrors that

@@ -41,7 +41,7 @@ struct JournalEvent {
   [[nodiscard]] Edit edit() const { return step->edit_of(frame); }
 };
 
-/// Of the steps asked for, in order. Refers to the journal.
+/// The events of the steps asked for, in order. Refers to the journal, which must outlive it.
 class JournalWalk {
  public:
   class Iterator {
@@ -71,7 +71,7 @@ class JournalWalk {
   std::uint32_t first_, end_;
 };
 
-/// Calls `visit(event)` for each edit, for those to whom a drag is an edit like any other.
+/// Calls `visit(event)` for each edit: for callers to whom a frame of a drag is an edit like any other.
 template <class Visit>
 void follow_edits(const JournalWalk& walk, const Visit& visit) {
   for (const JournalEvent& event : walk) {
@@ -81,8 +81,8 @@ void follow_edits(const JournalWalk& walk, const Visit& visit) {
         visit(event);
         break;
       case EventKind::base:
-      case EventKind::release:    // of what was dragged, which stays where it is
-      case EventKind::wedge_end:  // of which the last value stays
+      case EventKind::release:    // what was dragged stays where it is
+      case EventKind::wedge_end:  // the last value of the wedge stays in the scene
         break;
     }
   }

@@ -30,14 +30,14 @@ class Rehearsal {
         done_(state, journal.file, journal.path.parent_path()),
         errors_(journal.file) {}
 
-  /// Requires a journal without errors. Of one step at least: not only colours change.
+  /// Whether at least one step changes more than colours. Requires a journal without errors.
   [[nodiscard]] bool finds_class_beyond_color() {
     notes_classes_ = true;
     static_cast<void>(run());
     return is_beyond_color_;
   }
 
-  /// Requires a journal without errors.
+  /// Whether at least one step changes a value of the scene. Requires a journal without errors.
   [[nodiscard]] bool finds_change() {
     static_cast<void>(run());
     return is_change_;

@@ -43,7 +43,7 @@ Json Transaction::named_value(const Resolved& resolved) {
     name_section(document(), *section, value);
     return value;
   }
-  // As much of the entry as leads to the value.
+  // Wraps the value in as much of its entry as leads to it.
   for (std::size_t depth = path.size() - 1; depth > 1; --depth) {
     const Tokens above(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(depth));
     const bool is_item = value_at(document().look, above, {}).is_array();

@@ -78,7 +78,8 @@ void Transaction::undo() {
   if (!touched_earlier_.empty()) (void)state_.recompile({touched_earlier_.begin(), touched_earlier_.end()}, file_);
 }
 
-/// What an edit touched that was refused has not been compiled, and may have names that no compiler takes.
+/// After a refused edit: the document gets its earlier values, and what the edit touched is forgotten. It has not been
+/// compiled, and may have names that no compiler takes.
 void Transaction::give_up() {
   restore_document();
   touched_.clear();

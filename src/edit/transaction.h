@@ -28,7 +28,7 @@ class Transaction {
   void undo();
   /// Whether the edits that were applied left any entry of the document other than it was.
   [[nodiscard]] bool has_changes();
-  /// What transactions before this one have copied counts, too.
+  /// From now on what `earlier` has copied counts against what a journal may copy, too.
   void count_after(const Transaction& earlier) { copied_before_ = earlier.copied_; }
   /// Takes over a transaction that came after this one: undo() takes back both.
   void absorb(Transaction&& later);
@@ -43,9 +43,9 @@ class Transaction {
   // transaction.cpp
   [[nodiscard]] Tokens resolve(const std::string& pointer, const PatchPlace& place) const;
   void run(Resolved& resolved);
-  /// What a replace overwrites. A member that its schema marks as unwritten (look_schema.h: light range, attenuation
-  /// distance, texture mapping) is created as null if the document omits it, together with the plain objects it lies
-  /// in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
+  /// What a replace overwrites. A member that its schema marks as unwritten (scene/look/look_schema.h: light range,
+  /// attenuation distance, texture mapping) is created as null if the document omits it, together with the plain
+  /// objects it lies in, although RFC 6902 4.3 wants it to exist; "remove", "test" and "from" keep to the RFC.
   [[nodiscard]] Json& replaced_value(const Tokens& path, const PatchPlace& place);
   /// Counts a value that is to be copied to `to` ("/nodes" and below) against what a copy may make.
   void count_copy(const Json& value, const Tokens& to, const PatchPlace& place);
@@ -86,7 +86,7 @@ class Transaction {
   std::set<TouchedEntity> touched_;          // by the present edit
   std::set<std::string> touched_nodes_;      // of these the nodes that it has not removed since
   std::set<TouchedEntity> touched_earlier_;  // by those before it in this transaction
-  std::set<TouchedEntity> saved_;
+  std::set<TouchedEntity> saved_;  // those that before_ has
   std::vector<std::pair<TouchedEntity, std::optional<Json>>> before_;  // in the order of touching
   Extent copied_before_, copied_;          // by "copy", in earlier transactions and in this one
   std::map<TouchedEntity, Extent> grown_;  // entries that copies were made into, as they are then

@@ -31,12 +31,12 @@ constexpr Row rgba(Field field, std::string_view words, std::string_view pointer
                    double fallback, double high, unsigned traits) {
   return {bit_of(field), words, pointer, member, {fallback, fallback, fallback, fallback}, 0, high, {}, traits};
 }
-/// No, unless a document says yes.
+/// A flag that is false unless a document says otherwise.
 constexpr Row flag(Field field, std::string_view words, std::string_view pointer, bool Material::*member,
                    unsigned traits) {
   return {bit_of(field), words, pointer, member, {}, 0, 0, {}, traits};
 }
-/// The first of them, unless a document says otherwise.
+/// A choice that is the first of `choices` unless a document says otherwise.
 template <class Enum>
 constexpr Row choice(Field field, std::string_view words, std::string_view pointer, Enum Material::*member,
                      std::span<const std::string_view> choices) {
@@ -140,7 +140,7 @@ constexpr auto kRows = std::to_array<Row>({
     number(Field::transparency, "transparency", "extras/relook/transparency", &Material::transparency, 0, 0, 1),
 });
 
-/// Where the row of each field and slot is, by its bit. Not constant unless each has one.
+/// Where the row of each field and slot is, by its bit. Does not compile unless each has exactly one.
 constexpr auto kPlaces = [] {
   std::array<std::uint8_t, kRows.size()> places{};
   std::array<bool, kRows.size()> found{};

@@ -97,7 +97,7 @@ struct MaterialRow {
   unsigned traits = 0;
 
   [[nodiscard]] bool has(Trait trait) const { return (traits & trait) != 0; }
-  /// Null for what is no texture slot.
+  /// The texture slot; null for a row that is none.
   [[nodiscard]] const Slot* slot() const { return std::get_if<Slot>(&member); }
 };
 
@@ -106,7 +106,8 @@ struct MaterialRow {
 
 /// Do two materials differ in a field?
 [[nodiscard]] bool differs(const MaterialRow& row, const Material& a, const Material& b);
-/// Do they differ in a field that has the trait, `cuts`, `bends` or `bends_coat`, in what the trait says?
+/// Do they differ in a field that has the trait (`cuts`, `bends` or `bends_coat`)? For `cuts` only the alpha of an Rgba
+/// counts.
 [[nodiscard]] bool differs(MaterialRow::Trait trait, const Material& a, const Material& b,
                            std::span<const MaterialRow> rows = material_rows());
 
@@ -114,7 +115,8 @@ struct MaterialRow {
 [[nodiscard]] FieldMask changed_fields(const Material& a, const Material& b,
                                        std::span<const MaterialRow> rows = material_rows());
 
-/// What colour expressions read of a field: component `component` (scalars: 0); of flags and choices 0.
+/// What colour expressions read of a field: component `component` (of a scalar 0; of an angle 0 is the cosine, 1 the
+/// sine). The value is 0 for flags and choices.
 [[nodiscard]] float field_value(const Material& material, const MaterialRow& row, unsigned component);
 [[nodiscard]] float field_value(const Material& material, Field field, unsigned component);
 

@@ -1,4 +1,4 @@
-// `relook compare` as scripts see it.
+// `relook compare` of frames and runs as scripts see it: exit codes, lines and JSON.
 #include <gtest/gtest.h>
 
 #include <fstream>

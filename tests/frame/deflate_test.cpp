@@ -1,4 +1,4 @@
-// Compressed bytes follow from the data alone.
+// Compression of frames: the bytes follow from the data alone.
 #include "frame/deflate.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// --aovs as scripts and other programs see it.
+// Frames with --aovs as scripts and other programs see them.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Images: header and pyramid within the budget.
+// Bytes of an image: its header is read and its pyramid made within the budget (--import-memory), or it is refused.
 #include <zlib.h>
 
 #include <algorithm>

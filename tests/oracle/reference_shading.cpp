@@ -1,5 +1,5 @@
-// The oracle's colours: lobes, Fresnel terms and both models as SHADING.md says under "metallic-roughness" and
-// "blinn-phong".
+// The oracle's colours: lobes, Fresnel terms and both models as src/color/SHADING.md says under "metallic-roughness"
+// and "blinn-phong".
 #include <algorithm>
 #include <cmath>
 #include <numbers>

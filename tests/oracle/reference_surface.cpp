@@ -1,4 +1,4 @@
-// The oracle's hits: triangles, textures and normals as SHADING.md says under "At a hit".
+// The oracle's hits: triangles, textures and normals as src/color/SHADING.md says under "At a hit".
 #include <array>
 #include <cmath>
 #include <optional>

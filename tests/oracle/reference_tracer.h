@@ -1,6 +1,7 @@
-// The oracle of the picture: SHADING.md once more, slow and obvious. Double precision, brute force over all triangles,
-// recursive, one sample in the middle of each pixel. Shares no code with the renderer beyond what the specification
-// takes as given: texture and procedural values, camera rays, surface_optics, deformed and displaced meshes.
+// The oracle of the picture: src/color/SHADING.md once more, slow and obvious. Double precision, brute force over all
+// triangles, recursive, one sample in the middle of each pixel. Shares no code with the renderer beyond what the
+// specification takes as given: texture and procedural values, camera rays, surface_optics, deformed and displaced
+// meshes.
 #pragma once
 #include <ImathVec.h>
 

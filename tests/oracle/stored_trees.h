@@ -1,4 +1,4 @@
-// Stored ray trees by pixel, for counts by brute force over all of them.
+// Stored ray trees by pixel, for counts by brute force over all of them, and a room in which every ray has an end.
 #pragma once
 #include <vector>
 

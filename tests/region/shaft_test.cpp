@@ -1,3 +1,5 @@
+// Shafts between two boxes (paper 3.4.2): what they hold, which boxes their planes reject, and how large their surface
+// is, against random segments and closed forms.
 #include "region/shaft.h"
 
 #include <gtest/gtest.h>

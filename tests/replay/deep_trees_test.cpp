@@ -1,6 +1,6 @@
 // Trees of 32 generations between facing mirrors: the branches that lead to a node are told by 28 bits, so that those
-// of deep nodes are folded into their parents' (trace/tree/touch.h). Edits above, at and below the fold give the frames
-// and the trees of a full render, whatever tunnels are built.
+// of deep nodes are folded into their parents' (trace/tree/history.h). Edits above, at and below the fold give the
+// frames and the trees of a full render, whatever tunnels are built.
 #include <gtest/gtest.h>
 
 #include <algorithm>

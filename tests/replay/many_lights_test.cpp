@@ -1,5 +1,6 @@
-// Words of light states hold 16 lights, masks of lights 32, those of colour trees 64: scenes with a light more, and
-// edits of the lights on both sides of each border. After every step the replayed frame has the bits of a full render.
+// Words of light states hold 16 lights, sets of lights in tunnels 32, those in compressed colour trees 64
+// (trace/tree/light_set.h): scenes with a light more, and edits of the lights on both sides of each border. After every
+// step the replayed frame has the bits of a full render.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Named after what broke once.
+// Faults that the program once had; each test is named after what broke.
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// The camera: choosing it and its rays.
+// The camera: which one --camera chooses, and the rays that it sends.
 #include "scene/camera.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The look document: names, defaults, references.
+// The look document of a glTF file: names for indices, defaults that are filled in, references that are checked.
 #include "scene/look/look.h"
 
 #include <gtest/gtest.h>

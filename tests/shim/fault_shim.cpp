@@ -1,7 +1,6 @@
 // Preloaded into relook by tests: makes the n-th call that changes a file system fail, or kills the process there.
 //   RELOOK_FAULT=n:MODE     MODE: kill (before the call), after (kill after it), eio (this call fails), enospc (this
-//   and
-//                           all later calls that need space fail), short (this write writes half of its bytes)
+//                           and all later calls that need space fail), short (this write writes half of its bytes)
 //   RELOOK_FAULT_COUNT=FILE the number of such calls is written there at the end
 //   RELOOK_EXCHANGE=n:A:B   before the n-th opening of a MANIFEST.json the folders A and B change names
 // Writes to standard output and error do not count.

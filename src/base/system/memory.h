@@ -1,4 +1,4 @@
-// Memory of this process as the operating system counts it.
+// Memory of this process: how much the operating system counts, and ways to give memory back or to keep it.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -7,7 +7,7 @@
 
 namespace relook {
 
-/// The resident set now. Not for a child of fork(): it would be told of the process that asked first.
+/// The bytes of the resident set now. Not for a child of fork(): it would be told of the process that asked first.
 [[nodiscard]] std::uint64_t resident_set_bytes();
 
 /// Keeps a value until the process ends, and its memory with it: for what would take long to take apart for nothing.

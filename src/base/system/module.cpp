@@ -17,7 +17,7 @@ void* module_function(const char* module, const char* function, const char* purp
   for (const std::filesystem::path& path : {folder / module, folder.parent_path() / "lib" / "relook" / module}) {
     if (!std::filesystem::exists(path, ignored)) continue;
     void* loaded = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    set_float_mode();  // what libraries do when they are loaded is theirs
+    set_float_mode();  // libraries may change the mode as they are loaded
     void* found = loaded != nullptr ? dlsym(loaded, function) : nullptr;
     if (found != nullptr) return found;
     if (const char* message = dlerror(); message != nullptr) reason = message;

@@ -55,7 +55,7 @@ void allow(int rules, const std::filesystem::path& path, std::uint64_t rights) {
     landlock_path_beneath_attr rule{};
     rule.allowed_access = S_ISDIR(status.st_mode) ? rights : rights & kOfFiles;
     rule.parent_fd = file;
-    // Refused for pipes and sockets, which Landlock leaves alone.
+    // The kernel refuses a rule for pipes and sockets, which Landlock leaves alone.
     static_cast<void>(syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &rule, 0));
   }
   ::close(file);

@@ -16,7 +16,7 @@ struct Reach {
   std::vector<std::filesystem::path> readable, writable;  // what is writable is readable, too
 };
 
-/// For the rest of the process. Requires: no other thread runs yet; later ones inherit it.
+/// Confines the process for the rest of its life. Requires: no other thread runs yet; later ones inherit the sandbox.
 void enter_sandbox(const Reach& reach);
 
 /// What this build and this kernel have: "no_new_privs, seccomp, landlock 7", "none (...)".

@@ -19,7 +19,7 @@ inline constexpr bool kHasThreadSanitizer = false;
 #endif
 #endif
 
-/// Is memory or time of a process not what it is without?
+/// Whether a sanitizer makes the process take other amounts of memory and time than it does without.
 inline constexpr bool kIsInstrumented = kHasAddressSanitizer || kHasThreadSanitizer;
 
 }  // namespace relook

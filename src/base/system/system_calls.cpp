@@ -69,7 +69,7 @@ constexpr long kRefused[] = {
 
 constexpr std::uint32_t kFail = SECCOMP_RET_ERRNO | EPERM, kUnknown = SECCOMP_RET_ERRNO | ENOSYS;
 
-/// Of the call that is looked at; both architectures have the lower half of an argument first.
+/// The offset of an argument of the call that is looked at: of its lower half, which both architectures have first.
 constexpr std::uint32_t argument(std::uint32_t number) {
   return static_cast<std::uint32_t>(offsetof(seccomp_data, args)) + 8 * number;
 }
@@ -124,7 +124,7 @@ std::vector<sock_filter> system_call_filter(pid_t own) {
     filter.answer(SECCOMP_RET_ALLOW);
     filter.answer(kFail);
   }
-  // Of the process itself, as 0 or by its number: limits, and on which processors it runs.
+  // Limits, scheduling and the choice of processors: the process may set its own, as 0 or by its number.
   for (const long call :
        {SYS_prlimit64, SYS_sched_setaffinity, SYS_sched_setscheduler, SYS_sched_setparam, SYS_sched_setattr}) {
     filter.when(BPF_JEQ, static_cast<std::uint32_t>(call), 5);
@@ -134,7 +134,7 @@ std::vector<sock_filter> system_call_filter(pid_t own) {
     filter.answer(kFail);
     filter.answer(SECCOMP_RET_ALLOW);
   }
-  // Both type into the terminal from which the program was started.
+  // TIOCSTI and TIOCLINUX type into the terminal from which the program was started.
   filter.when(BPF_JEQ, SYS_ioctl, 5);
   filter.load(argument(1));
   filter.unless(BPF_JEQ, TIOCSTI, 2);

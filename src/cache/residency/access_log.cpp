@@ -56,7 +56,7 @@ class Fields {
 /// The pieces in memory, replayed access by access.
 class Trial {
  public:
-  /// `weigh`: what leaves first, from a piece and the number of the change.
+  /// The weight of a piece, of which the lowest leaves first, from the piece and the number of the change.
   using Weigh = std::function<double(std::uint32_t piece, const PieceFacts& facts, std::uint64_t change)>;
 
   Trial(const AccessLog& log, std::uint64_t memory_bytes, Weigh weigh)

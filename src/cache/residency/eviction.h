@@ -13,13 +13,14 @@ inline constexpr EvictionPolicy kEvictionPolicies[] = {EvictionPolicy::weight, E
 /// "weight", "plain-weight", "lru", "size", "gdsf".
 [[nodiscard]] std::string_view policy_name(EvictionPolicy policy);
 
-/// To find a hit again, by a ray against one object, and to build the tunnels around one: until it has been measured.
+/// Estimates until a time has been measured: to find one hit again, by a ray against one object, and to build the
+/// tunnels around one hit.
 inline constexpr double kHitSeconds = 5e-7, kTunnelSeconds = 3e-7;
 
 /// What a policy may look at.
 struct PieceFacts {
   std::uint64_t bytes = 1;
-  double return_seconds = 0;   // to have it back: from disk, or worked out again
+  double return_seconds = 0;   // what it takes to have it back: from disk, or worked out again
   std::uint64_t last_use = 0;  // the change that used it last
   std::uint64_t uses = 0;      // number of changes that used it
   double surface_area = 1;     // of tunnels, relative to the mean: how likely an object meets them; otherwise 1

@@ -55,7 +55,7 @@ struct PieceCounts {
   std::array<std::uint64_t, kPieceKinds> evicted{}, reloaded{};
   std::array<std::uint64_t, kPieceKinds> fetched{};  // stored pieces that were used for the first time
   std::uint64_t others_evicted = 0;
-  std::uint64_t evicted_bytes = 0, reloaded_bytes = 0;  // others included
+  std::uint64_t evicted_bytes = 0, reloaded_bytes = 0;  // evicted: others included
 };
 
 /// Something outside of Residency that could leave memory, too.
@@ -101,7 +101,7 @@ class Residency {
     Residency* residency_ = nullptr;
   };
 
-  /// Before the first change; without, none is foreseen.
+  /// To be called before the first change; without it no needs are foreseen.
   void set_needs(const MemoryNeeds& needs);
   /// All pieces of the kind are missing then, whatever was there before.
   void add_kind(PieceKind kind, std::size_t tiles, PieceHandler handler);
@@ -111,7 +111,7 @@ class Residency {
 
   [[nodiscard]] EvictionPolicy policy() const { return options_.policy; }
   [[nodiscard]] bool is_limited() const { return options_.memory_bytes.has_value(); }
-  /// From now on, without a limit, too: pieces may be missing.
+  /// From now on sizes and uses are noted without a limit, too, because pieces may be missing.
   void track() { tracks_pieces_ = true; }
   /// Does anyone care about sizes, uses and what is missing?
   [[nodiscard]] bool is_watched() const { return is_limited() || options_.logs_accesses || tracks_pieces_; }

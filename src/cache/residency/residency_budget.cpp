@@ -13,7 +13,7 @@ namespace {
 /// floor that one names is good for the other.
 constexpr std::uint64_t kSlack = 32;
 
-/// As the command line reads it, rounded up.
+/// A size as the command line reads it, in MiB, rounded up.
 std::string megabytes(std::uint64_t bytes) { return std::to_string((bytes + (1U << 20) - 1) >> 20) + "M"; }
 
 }  // namespace

@@ -58,7 +58,8 @@ void Residency::list_candidates() {
   std::ranges::sort(candidates_, std::greater(), &Candidate::weight);
 }
 
-/// From disk, if it may go there; what has no other way to come back is priced like that, too.
+/// The seconds that it takes to have the piece back: from the cache, if it is stored there; from the spill file, if
+/// there is one or if nothing says how long it takes to work the piece out again; otherwise to work it out again.
 double Residency::return_seconds(const Piece& p) const {
   if (p.is_stored) return static_cast<double>(p.facts.bytes) * fetch_seconds_per_byte_;
   const double by_disk = static_cast<double>(p.facts.bytes) * seconds_per_byte_ * (p.copy ? 1 : 2);

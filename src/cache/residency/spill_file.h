@@ -16,7 +16,7 @@ class SpillFile {
     std::uint64_t offset = 0, bytes = 0, room = 0;
   };
 
-  /// In `folder`, of at most `limit_bytes`. Throws IoError if the folder cannot hold a file.
+  /// Creates a file in `folder`, of at most `limit_bytes`. Throws IoError if the folder cannot hold a file.
   SpillFile(const std::filesystem::path& folder, std::uint64_t limit_bytes);
   ~SpillFile();
   SpillFile(const SpillFile&) = delete;

@@ -38,7 +38,8 @@ bool holds_camera(const SceneState& state, const std::string& node) {
   return false;
 }
 
-/// Names for indices; the Object Model's lights are the look document's.
+/// The path in the look document of a pointer into the glTF document: entities have names there instead of indices, and
+/// /extensions/KHR_lights_punctual/lights is /lights.
 Tokens look_path(const LookDocument& document, Tokens tokens) {
   const Tokens lights{"extensions", "KHR_lights_punctual", "lights"};
   if (tokens.size() > lights.size() && std::equal(lights.begin(), lights.end(), tokens.begin()))

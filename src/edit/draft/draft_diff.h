@@ -20,8 +20,8 @@ struct DiffDraft {
 };
 
 /// The step after which `before` looks like `after`. `folder`: for files, relative to the journal's. Cameras and
-/// variants, which no journal edits, are named in warnings. Throws InputError for what else it cannot say:
-/// instances that differ.
+/// variants, which no journal edits, are named in warnings. Throws InputError for what else it cannot say: instances
+/// that differ, other inverse bind matrices of a skin, an image without content.
 [[nodiscard]] DiffDraft draft_diff(const LookDocument& before, const LookDocument& after, const std::string& folder);
 
 }  // namespace relook

@@ -1,5 +1,6 @@
-// Journals made from something else: the variants and animations of a scene, values for one parameter. What they
-// cannot say is named in warnings. Called by the `journal` verb, which checks a draft as it would any journal.
+// Journals made from something else: the variants and animations of a scene, values for one parameter, and
+// (draft_diff.h) two exports of a scene. What they cannot say is named in warnings. Called by the `journal` verb, which
+// checks a draft as it would any journal.
 #pragma once
 #include <optional>
 #include <string>

@@ -1,5 +1,5 @@
-// Materials, texture slots, lights and the environment compiled from their look-document values. Requires values that
-// passed check_against_schema; what types and ranges cannot tell is checked here.
+// Materials with their texture slots, displacement maps, lights and the environment, compiled from their look-document
+// values. Requires values that passed check_against_schema; what types and ranges cannot tell is checked here.
 #pragma once
 #include <span>
 #include <string_view>
@@ -21,7 +21,7 @@ struct CompileContext {
 /// `pointer`: place of `value`, for messages. All throw LookError, or InputError when an image does not decode.
 [[nodiscard]] Material compile_material(const CompileContext& context, const std::string& name, const Json& value,
                                         const std::string& pointer);
-/// The part of compile_material() that is no texture: sets what `value` has, the rest stays as it is.
+/// The part of compile_material() that is no texture: sets the fields that `value` has, others stay as they are.
 void set_fields(const Json& value, Material& material, std::span<const MaterialRow> rows = material_rows());
 [[nodiscard]] Displacement compile_displacement(const CompileContext& context, const Json& value,
                                                 const std::string& pointer);

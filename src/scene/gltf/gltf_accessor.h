@@ -16,7 +16,7 @@ namespace relook {
 /// values. Requires: no matrix.
 [[nodiscard]] std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor);
 
-/// The same of some elements, increasing and below count.
+/// The same of some elements only. Requires: `elements` increase and are below the accessor's count.
 [[nodiscard]] std::vector<float> read_floats(const GltfModel& model, const GltfAccessor& accessor,
                                              std::span<const std::uint32_t> elements);
 

@@ -1,5 +1,5 @@
 // Small readers for glTF's own habits: optional members, arrays of objects, indices into other arrays. Those over Json
-// read what may be wrong, those over JsonView say where. Used by the importer alone.
+// read what may be wrong, those over JsonView say where. Used in scene/gltf alone.
 #pragma once
 #include <optional>
 #include <string>

@@ -17,7 +17,7 @@ namespace relook {
 
 inline constexpr std::size_t kNoIndex = std::numeric_limits<std::size_t>::max();
 
-/// Of instances and inverse binds: products with places in the world stay finite.
+/// The largest number in matrices of instances and inverse binds: products with places in the world stay finite.
 inline constexpr float kLargestMatrix = 1e12F;
 
 struct GltfBufferView {
@@ -57,22 +57,23 @@ struct GltfModel {
 };
 
 /// Lets tinygltf parse the geometry of a checked document. It gets `buffers` from memory and sees no file. Primitives
-/// of Draco data have no indices yet (gltf_unpack.h). Throws InputError{file, ...} with tinygltf's own words if it
-/// refuses.
+/// of Draco data have no indices yet (packed/gltf_unpack.h).
+/// Throws InputError{file, ...} with tinygltf's own words if it refuses.
 [[nodiscard]] GltfModel parse_model(const Json& gltf, std::vector<std::vector<unsigned char>> buffers,
                                     std::string_view file);
 
 /// All triangle primitives, in order. Checks what can only be seen in the data: finite values, indices below the vertex
 /// count. A column with a wrong value that nothing in the scene reads is left out, and so is a mesh. Throws
-/// InputError{file, pointer, ...}, for a small file that asks for much, too. `share`: takes the bytes of every column
-/// before it is made; throws ResourceError where they are not left.
+/// InputError{file, pointer, ...}, for a small file that asks for much, too.
+/// `share`: takes the bytes of every column before it is made; throws ResourceError where they are not left.
 [[nodiscard]] std::vector<std::vector<Mesh>> decode_meshes(const GltfModel& model, const GltfUse& use,
                                                            std::string_view file, std::vector<std::string>& warnings,
                                                            ImportShare& share);
 
 /// Inverse bind matrices of every skin, one a joint: identities without an accessor. Checks skins as a whole. A skin
-/// that no node of the active scene has, has none; nor has one of which the scene lacks a joint, and the nodes of
-/// `gltf` lose it, with a warning. `share`: as above. Throws InputError, ResourceError.
+/// that no node of the active scene has gets none; nor does a skin of which the scene lacks a joint, and the nodes of
+/// `gltf` lose that skin, with a warning. `share`: as above.
+/// Throws InputError, ResourceError.
 [[nodiscard]] std::vector<std::vector<Transform>> decode_skins(Json& gltf, const GltfModel& model,
                                                                std::string_view file,
                                                                std::vector<std::string>& warnings,

@@ -1,5 +1,5 @@
-// One glTF primitive being decoded: its accessors as numbers at the vertices that triangles name, checked. Used by
-// gltf_mesh.cpp (what every mesh has) and gltf_deform.cpp (morph targets, joints) alone.
+// One glTF primitive being decoded: accessors go in, numbers at the vertices that triangles name come out, checked.
+// Used by gltf_mesh.cpp (what every mesh has) and gltf_deform.cpp (morph targets, joints) alone.
 #pragma once
 #include <string>
 #include <string_view>
@@ -12,7 +12,7 @@ namespace relook {
 
 inline constexpr float kLargestCoordinate = 1e9F;  // products of two edges and their squares stay finite
 
-/// One primitive being decoded.
+/// Where a primitive stands, and what its decoding reads and reports to.
 struct PrimitiveSource {
   const GltfModel& model;
   const GltfPrimitive& primitive;
@@ -45,7 +45,7 @@ struct ColumnFormat {
 [[nodiscard]] std::string attribute_place(std::string_view semantic);  // "/attributes/POSITION"
 
 /// An accessor's numbers at the vertices that are used, all finite and at most `largest` in magnitude. `is_read`:
-/// whether the scene reads the column; if not, one with a wrong number is empty.
+/// whether the scene reads the column; if not, a column with a wrong number is empty.
 [[nodiscard]] std::vector<float> column_of(const PrimitiveSource& source, const GltfAccessor& accessor,
                                            const std::string& place, const ColumnFormat& format, float largest,
                                            bool is_read);
@@ -57,7 +57,7 @@ struct ColumnFormat {
 void decode_targets(const PrimitiveSource& source, Mesh& mesh);
 /// JOINTS_n and WEIGHTS_n (section 3.7.3.3), the weights of every vertex with the sum 1.
 void decode_joints(const PrimitiveSource& source, Mesh& mesh);
-/// Bytes that the two make of a primitive with so many vertices.
+/// Bytes that morph targets and joints make of a primitive with so many vertices.
 [[nodiscard]] std::uint64_t deforming_bytes(const GltfPrimitive& primitive, std::uint64_t vertices);
 /// The most bytes a vertex that decoding holds beside the mesh.
 [[nodiscard]] std::uint64_t passing_bytes(const GltfPrimitive& primitive);

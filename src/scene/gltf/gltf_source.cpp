@@ -39,7 +39,7 @@ void read_json(std::string_view text, GltfSource& source) {
   JsonView(source.json, source.file).require_object();
 }
 
-/// The bytes that the header counts: what is behind them is ignored.
+/// The bytes that the header counts: bytes behind them are ignored.
 BytesView glb_content(BytesView bytes, GltfSource& source) {
   const std::string& file = source.file;
   if (bytes.size() < kGlbHeaderBytes) fail_at(file, bytes.size(), "the GLB header is cut short");

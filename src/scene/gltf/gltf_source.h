@@ -1,5 +1,6 @@
 // The bytes of a glTF file and of everything it refers to: GLB framing (glTF 2.0 section 4), JSON text, data URIs and
-// files below the scene's folder or the roots (import_rules.h). Nothing here trusts a length. Called by import.cpp.
+// files below the scene's folder or the roots (import_rules.h). Nothing here trusts a length. Called by import.cpp and
+// gltf_animation.cpp; reports and hashes of edits (report/) ask which files a scene names.
 #pragma once
 #include <filesystem>
 #include <memory>

@@ -92,7 +92,7 @@ class Converter {
  private:
   using Source = std::pair<std::size_t, float>;  // index, glossiness factor
 
-  /// None where the roughness is the same everywhere.
+  /// The texture of the roughness that a glossiness texture makes; none where the roughness is the same everywhere.
   std::optional<std::size_t> roughness_texture(std::size_t texture, float factor) {
     const Json old = gltf_["textures"][texture];
     if (!old.contains("source") || factor == 0) return std::nullopt;

@@ -51,7 +51,7 @@ std::vector<std::size_t> parents_of(const Json& gltf) {
   return parents;
 }
 
-/// Roots of the active scene that are none, and such as are named twice.
+/// Tolerates, or refuses where imports are strict, roots of the active scene that have a parent or are named twice.
 void check_roots(const Json& gltf, std::string_view file, std::vector<std::string>& warnings) {
   const Json& scenes = array_or_empty(gltf, "scenes");
   if (scenes.empty()) return;

@@ -1,5 +1,6 @@
-// glTF 2.0 import (.gltf, .glb) of files that may be wrong or hostile: scanned before tinygltf parses them, file access
-// contained below the scene's folder, everything checked after the parse in 64-bit arithmetic.
+// glTF 2.0 import (.gltf, .glb) of files that may be wrong or hostile. Structure and values are checked, in 64-bit
+// arithmetic, before tinygltf parses the geometry; what only the data shows is checked as it is decoded. Files are read
+// below the scene's folder or the roots (import_rules.h) alone.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,6 +1,7 @@
 // What a look document may contain, as tables: every key with its type, range, default and the section it refers to.
-// One table serves four walks: cutting a glTF value down to what is supported, filling defaults, checking an edited
-// value, and visiting the names it refers to. glTF 2.0 section 5 and the KHR_* extensions; extras.relook.
+// One table serves all walks: checking the values of a glTF file (gltf/check/gltf_values.h), cutting them down to what
+// is supported, filling defaults, checking an edited value, visiting the names it refers to, and finding the field of a
+// pointer. glTF 2.0 section 5 and the KHR_* extensions; extras.relook.
 #pragma once
 #include <deque>
 #include <functional>
@@ -61,21 +62,23 @@ struct Schema {
 [[nodiscard]] const Schema& scene_schema();       // /scene
 [[nodiscard]] const Schema& extensions_schema();  // /extensions
 [[nodiscard]] const Schema& camera_schema();      // an entry of glTF's cameras
-/// That of materials with other fields than schema_of(Section::materials). `parts` takes the schemas of inner objects.
+/// The schema of materials with other fields than those of schema_of(Section::materials). `parts` takes the schemas of
+/// inner objects.
 [[nodiscard]] Schema material_schema(std::span<const MaterialRow> rows, std::deque<Schema>& parts);
 /// A material of a file: with what is converted before it becomes one of a look document.
 [[nodiscard]] const Schema& file_material_schema();
 
 /// A number field with this lower bound must be above zero.
 inline constexpr double kAboveZero = 1e-30;
-/// The bounds of numbers for which glTF has none: what a float holds, or where products of a few must stay finite.
+/// Bounds of numbers for which glTF has none: what a float holds, or, where products of a few must stay finite, less.
 inline constexpr double kUnbounded = 3.4028234663852886e38;
 inline constexpr double kCeiling = 1e12;
-/// Likewise of what is relook's own.
+/// The bound of numbers that are relook's own (extras.relook). A file that exceeds it is wrong as with a bound of glTF.
 inline constexpr double kOwnCeiling = 1e6;
 
 /// The number that `x` stands for in a number or reals field: itself where it is allowed; the bound where only rounding
-/// (1e-6 of it, or of 1) puts `x` beyond, or where the bound is not glTF's but one of the two above; none otherwise.
+/// (1e-6 of it, or of 1) puts `x` beyond, or where the bound is kCeiling or kUnbounded and so not glTF's; none
+/// otherwise.
 [[nodiscard]] std::optional<double> fitted(const SchemaField& field, double x);
 /// "1.5 is above 1"; requires an `x` that the field does not allow.
 [[nodiscard]] std::string range_fault(const SchemaField& field, const Json& x);

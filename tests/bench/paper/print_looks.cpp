@@ -1,3 +1,4 @@
+// The text that print_looks() prints for a LookTable: our milliseconds beside the paper's, row by row.
 #include <cstdio>
 #include <cstring>
 #include <thread>

@@ -1,3 +1,4 @@
+// The text that print_moves() prints for a MoveTable: our times beside the paper's, row by row.
 #include <cstdio>
 
 #include "paper.h"

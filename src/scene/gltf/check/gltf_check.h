@@ -1,7 +1,7 @@
 // Checks of a glTF document's structure before any parser or decoder trusts it (glTF 2.0 sections 3 and 5): every
 // reference, count and byte range sound, the nodes a forest; of used and unused things alike. What values say is for
-// gltf_values.h. What only concerns parts that relook does not read (animations, min and max of accessors) is not
-// checked.
+// gltf_values.h. Animations are checked where they are read for journals (gltf_animation.cpp); what relook does not
+// read (min and max of accessors) is not checked.
 #pragma once
 #include <string>
 #include <string_view>

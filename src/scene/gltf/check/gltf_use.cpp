@@ -66,7 +66,7 @@ void mark_uv(const Json& info, std::array<bool, 2>& uv) {
   if (index < uv.size()) uv[index] = true;
 }
 
-/// Of every material, the uv sets that its textures read.
+/// The uv sets that the textures of each material read.
 std::vector<std::array<bool, 2>> uv_sets(const Json& materials) {
   std::vector<std::array<bool, 2>> sets(materials.size());
   for (std::size_t i = 0; i < materials.size(); ++i)

@@ -1,5 +1,5 @@
 // What the active scene of a glTF file reaches, and so what of a file can be wrong without harm. Used by the importer
-// alone.
+// and by make_look_document(), which looks up glTF's arrays by section.
 #pragma once
 #include <array>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace relook {
 
-/// By index into glTF's arrays. Variants count as used: an edit away.
+/// What is used, by index into glTF's arrays. Materials of variants count as used: one edit shows them.
 struct GltfUse {
   std::vector<bool> nodes, cameras, lights, meshes, skins, materials, textures, images, samplers;
   std::vector<bool> skinned_meshes;  // of a node with a skin

@@ -52,7 +52,7 @@ class ValueCheck {
     return Fault{place.text(), "expected " + std::string(wanted) + ", got " + std::string(type_noun(value))};
   }
 
-  /// What is wrong with it, if it cannot be put right.
+  /// What is wrong with a member, if it cannot be put right.
   std::optional<Fault> member(const SchemaField& field, Json& value, const JsonPlace& place) {
     switch (field.kind) {
       case FieldKind::number:

@@ -1,6 +1,6 @@
-// The numbers, words and switches of a glTF document against look_schema.h's table, the one table of bounds: what is
-// beyond by rounding is put right, what nothing uses is left out, both with a warning; the rest is an error. Used by
-// import.cpp alone.
+// The numbers, words and switches of a glTF document against the table of look/look_schema.h, the one table of bounds:
+// a value that is beyond by rounding is put right, a wrong one that nothing uses is left out, both with a warning; the
+// rest is an error. Used by import.cpp alone.
 #pragma once
 #include <string>
 #include <string_view>

@@ -26,7 +26,7 @@ struct DracoUse {
   std::size_t indices;                              // accessor
 };
 
-/// A file may name attributes of its own, of any type.
+/// Whether relook may read an attribute: a file may name attributes of its own ("_NAME"), of any type.
 bool is_readable(const std::string& name, const GltfAccessor& accessor) {
   return !name.starts_with('_') && accessor.width >= 1 && accessor.width <= 4;
 }
@@ -44,7 +44,7 @@ DracoUse use_of(const JsonView& place, const JsonView& packed, const GltfModel& 
   return use;
 }
 
-/// By buffer view, in the order of the primitives.
+/// The primitives that name Draco data, by buffer view, in their order.
 std::map<std::size_t, std::vector<DracoUse>> uses_of(const JsonView& root, GltfModel& model) {
   std::map<std::size_t, std::vector<DracoUse>> uses;
   for_each_object(root, "meshes", [&](const JsonView& mesh, std::size_t m) {

@@ -19,7 +19,7 @@ namespace relook {
 /// The extension of a primitive; none without it.
 [[nodiscard]] std::optional<JsonView> draco_extension(const JsonView& primitive);
 
-/// Of a checked model: the primitives that Draco data makes triangles of get its attributes and indices. Data that
+/// Gives the primitives of a checked model that name Draco data its attributes and indices. Data that
 /// several primitives name is decoded once. Throws InputError{file, pointer, ...}, ResourceError; not InputError for
 /// data of meshes that the scene does not show: they lose their positions then, with a warning.
 void unpack_draco(const JsonView& root, GltfModel& model, const GltfUse& use, std::vector<std::string>& warnings,
@@ -31,12 +31,12 @@ struct ReadAccessor {
   bool is_needed;
 };
 
-/// The views that these accessors read; others stay as they are, and so do, without data and with a warning, those
-/// that cannot be read and are not needed. Errors as above.
+/// Unpacks the views that these accessors read; others stay as they are. A view that cannot be read and is not needed
+/// stays without data, with a warning. Errors as above.
 void unpack_meshopt(const JsonView& root, GltfModel& model, const std::vector<ReadAccessor>& accessors,
                     std::vector<std::string>& warnings, ImportShare& share);
 
-/// Accessors that meshes, skins and instances read. Requires: draco is unpacked.
+/// Accessors that meshes, skins and instances read. Requires: unpack_draco() has been called.
 [[nodiscard]] std::vector<ReadAccessor> accessors_of_scene(const JsonView& root, const GltfModel& model,
                                                            const GltfUse& use);
 /// Accessors that animations read.

@@ -138,7 +138,7 @@ bool convert(From from, bool is_normalized, To& to) {
   }
 }
 
-/// A damaged stream may leave values and their places out.
+/// False where a value is missing or does not fit: a damaged stream may leave values and their places out.
 template <class To, class From>
 bool read_numbers(const draco::PointAttribute& attribute, std::size_t points, To* out) {
   const auto width = static_cast<std::size_t>(attribute.num_components());
