@@ -21,6 +21,15 @@ std::string column_hash(const std::vector<T>& values) {
   return hash128(std::as_bytes(std::span<const T>(values)));
 }
 
+/// Of what morph targets and skins bring; nothing for a mesh that has neither.
+std::string deformation_hash(const Mesh& mesh) {
+  std::string digests;
+  for (const MorphTarget& target : mesh.targets)
+    digests += column_hash(target.positions) + column_hash(target.normals) + column_hash(target.tangents);
+  if (!mesh.joints.empty()) digests += column_hash(mesh.joints) + column_hash(mesh.joint_weights);
+  return digests;
+}
+
 /// Hash of everything that a scene file and the files beside it contribute.
 std::string content_hash(const std::string& path, const LookDocument& document) {
   std::string digests = hash128(read_file(path));
@@ -31,6 +40,8 @@ std::string content_hash(const std::string& path, const LookDocument& document) 
   for (const auto& [name, image] : document.assets->images)
     digests += name + (image.bytes ? hash128(*image.bytes) : "-");
   for (const auto& [node, matrices] : document.instances) digests += node + column_hash(matrices);
+  for (const Mesh& mesh : document.assets->meshes) digests += deformation_hash(mesh);
+  for (const auto& [skin, matrices] : document.inverse_binds) digests += skin + column_hash(matrices);
   return digests;
 }
 

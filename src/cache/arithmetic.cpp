@@ -1,14 +1,19 @@
 #include "cache/arithmetic.h"
 
+#include <span>
+#include <vector>
+
 #if __has_include(<gnu/libc-version.h>)
 #include <gnu/libc-version.h>
 #endif
 
 #if defined(__x86_64__)
 #include <cpuid.h>
+#include <xmmintrin.h>
 #endif
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "trace/embree_version.h"
 
 namespace relook {
@@ -46,10 +51,28 @@ std::string instruction_set() {
 #endif
 }
 
+/// The processor's approximate reciprocals and square roots, from which Embree goes on by Newton's method: each vendor has
+/// tables of its own, and the last bit of a hit follows from them. All that tables have, at most 14 bits of a mantissa,
+/// and both parities of exponents, as a hash: "reciprocals 1a2b3c4d".
+std::string reciprocals() {
+#if defined(__x86_64__)
+  constexpr int kPlaces = 1 << 14;
+  std::vector<float> approximations;
+  for (int i = 0; i < 2 * kPlaces; ++i) {
+    const __m128 x = _mm_set_ss(1.0F + static_cast<float>(i) / kPlaces);  // [1, 3)
+    approximations.push_back(_mm_cvtss_f32(_mm_rcp_ss(x)));
+    approximations.push_back(_mm_cvtss_f32(_mm_rsqrt_ss(x)));
+  }
+  return ", reciprocals " + hash128(std::as_bytes(std::span(approximations))).substr(0, 8);
+#else
+  return "";
+#endif
+}
+
 }  // namespace
 
 const Arithmetic& own_arithmetic() {
-  static const Arithmetic own{kArithmeticVersion, embree_version(), libc_version(), instruction_set()};
+  static const Arithmetic own{kArithmeticVersion, embree_version(), libc_version(), instruction_set() + reciprocals()};
   return own;
 }
 

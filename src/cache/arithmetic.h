@@ -20,7 +20,7 @@ namespace relook {
 
 /// Raised by hand with every change to the bits of anything that a cache stores or a frame shows: any pixel, colour of
 /// a sample, hit, ray path, shadow counter, displaced vertex or texel of a pyramid, for any scene, edit or option. Then
-/// tests/golden_bits.txt is written anew. Not raised for what leaves all of these as they were: speed, messages,
+/// tests/golden_bits is written anew. Not raised for what leaves all of these as they were: speed, messages,
 /// comments, new features that no scene could use before. No macro tells of contraction (-ffp-contract=off in
 /// CMakeLists.txt); the golden test does.
 inline constexpr std::uint32_t kArithmeticVersion = 3;
@@ -29,7 +29,8 @@ struct Arithmetic {
   std::uint32_t version = 0;  // kArithmeticVersion
   std::string embree;         // "3.13.5": of the library that was loaded
   std::string libc;           // "glibc 2.36": its libm computes what is uniform in a scene
-  std::string instructions;   // as far as Embree and libm choose their code by them: "avx2"
+  std::string instructions;   // what Embree and libm choose their code by, and how the processor approximates
+                              // reciprocals: "avx2, reciprocals 1a2b3c4d"
   bool operator==(const Arithmetic&) const = default;
 };
 
@@ -44,7 +45,7 @@ struct Arithmetic {
 /// 3.13.5"; "" if it does not.
 [[nodiscard]] std::string arithmetic_difference(const Arithmetic& written, const Arithmetic& own = own_arithmetic());
 
-/// "arithmetic 1, Embree 3.13.5, glibc 2.36, avx2"
+/// "arithmetic 1, Embree 3.13.5, glibc 2.36, avx2, reciprocals 1a2b3c4d"
 [[nodiscard]] std::string arithmetic_text(const Arithmetic& arithmetic);
 
 }  // namespace relook

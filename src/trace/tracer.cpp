@@ -33,7 +33,6 @@ struct Tracer::TopLevel::Impl {
 
 namespace {
 
-using TopLevelImpl = Tracer::TopLevel;
 
 /// What a filter callback needs, hung on Embree's context.
 struct Query

@@ -1,7 +1,7 @@
 // Colour trees compressed for a set of parameters (paper 3.3): of some ray trees, for each node that the parameters can
 // reach the columns of its residual program, and how these nodes hang together. Evaluating it gives the colours of the
 // trees for the parameters' current values, bit for bit as evaluating them whole. Made by Shader::compress(), kept and
-// evaluated by replay/compressed_edits.h.
+// evaluated by replay/color_tree_store.h.
 #pragma once
 #include <array>
 #include <cstdint>
