@@ -15,7 +15,7 @@
 #include "base/system/sanitizers.h"
 #include "run_program.h"
 #include "scene/gltf/import.h"
-#include "scene/texture/image.h"
+#include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 namespace {
