@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "scene/material_fields.h"
+
 namespace relook {
 namespace {
 
@@ -41,6 +43,13 @@ class UserLists {
 
 bool same_place(const RayLight& a, const Light& b) {
   return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
+}
+
+/// Do rays leave hits, or pass holes, by values that differ? If not, and optics and tangents stay, entries keep the
+/// material that they have: rays read nothing else of it.
+bool turns_rays_otherwise(const Material& before, const Material& after) {
+  return differs(MaterialRow::cuts, before, after) || differs(MaterialRow::bends, before, after) ||
+         differs(MaterialRow::bends_coat, before, after);
 }
 
 }  // namespace
@@ -103,11 +112,14 @@ void RayScene::apply_to_objects(Tables& tables, const Scene& scene, const SceneD
   std::move(users).write(tables.users, scene.materials.size());
   for (const auto& change : delta.materials) {
     const std::shared_ptr<const Material>& material = tables.materials.share(change.id.index());
+    const bool turns_rays = turns_rays_otherwise(change.before, *material);
     for (const ObjectId user : tables.users[change.id.index()]) {
-      if (tables.objects[user.index()].material == material) continue;  // made anew above
-      auto object = std::make_shared<RayObject>(tables.objects[user.index()]);
-      maker.set_material(*object, material);
-      tables.objects.replace(user.index(), std::move(object));
+      const RayObject& before = tables.objects[user.index()];
+      if (before.material == material) continue;  // made anew above
+      RayObject now = before;
+      maker.set_material(now, material);
+      if (!turns_rays && now.optics == before.optics && now.tangents == before.tangents) continue;
+      tables.objects.replace(user.index(), std::make_shared<const RayObject>(std::move(now)));
     }
   }
 }
