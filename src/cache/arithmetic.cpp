@@ -1,7 +1,7 @@
 #include "cache/arithmetic.h"
 
+#include <array>
 #include <span>
-#include <vector>
 
 #if __has_include(<gnu/libc-version.h>)
 #include <gnu/libc-version.h>
@@ -51,17 +51,19 @@ std::string instruction_set() {
 #endif
 }
 
-/// The processor's approximate reciprocals and square roots, from which Embree goes on by Newton's method: each vendor has
-/// tables of its own, and the last bit of a hit follows from them. All that tables have, at most 14 bits of a mantissa,
-/// and both parities of exponents, as a hash: "reciprocals 1a2b3c4d".
+/// The processor's approximate reciprocals and reciprocal square roots, from which Embree goes on by Newton's method:
+/// each vendor has tables of its own, and the last bit of a hit follows from them. A hash of those of 2^12 mantissas, of
+/// roots with an even and an odd exponent: ", reciprocals 1a2b3c4d".
 std::string reciprocals() {
 #if defined(__x86_64__)
-  constexpr int kPlaces = 1 << 14;
-  std::vector<float> approximations;
-  for (int i = 0; i < 2 * kPlaces; ++i) {
-    const __m128 x = _mm_set_ss(1.0F + static_cast<float>(i) / kPlaces);  // [1, 3)
-    approximations.push_back(_mm_cvtss_f32(_mm_rcp_ss(x)));
-    approximations.push_back(_mm_cvtss_f32(_mm_rsqrt_ss(x)));
+  constexpr int kMantissas = 1 << 12;
+  std::array<float, std::size_t{3} * kMantissas> approximations{};
+  float* next = approximations.data();
+  for (int i = 0; i < kMantissas; ++i) {
+    const float mantissa = 1.0F + static_cast<float>(i) / kMantissas;
+    *next++ = _mm_cvtss_f32(_mm_rcp_ss(_mm_set_ss(mantissa)));
+    *next++ = _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(mantissa)));
+    *next++ = _mm_cvtss_f32(_mm_rsqrt_ss(_mm_set_ss(2.0F * mantissa)));
   }
   return ", reciprocals " + hash128(std::as_bytes(std::span(approximations))).substr(0, 8);
 #else
