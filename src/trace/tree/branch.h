@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace relook {
 
@@ -51,6 +52,14 @@ class BranchSet {
   std::uint8_t bits_ = 0;
 };
 static_assert(sizeof(BranchSet) == 1 && BranchSet::all().size() == kBranches);
+
+/// The branches of a set, in their order.
+[[nodiscard]] inline std::vector<Branch> branches_of(BranchSet set) {
+  std::vector<Branch> branches;
+  for (std::size_t b = 0; b < kBranches; ++b)
+    if (set.has(static_cast<Branch>(b))) branches.push_back(static_cast<Branch>(b));
+  return branches;
+}
 
 /// What of the light that comes back along a ray counts: all of it, or one channel.
 enum class Channel : std::uint8_t { all, red, green, blue };

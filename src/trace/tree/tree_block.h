@@ -22,7 +22,8 @@ struct RayNode {
       : parent(above), sample(of_sample), ray(way) {}
 
   std::uint32_t parent;
-  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode};
+  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode,
+                                             kNoNode, kNoNode, kNoNode, kNoNode};
   std::uint32_t sample;  // within the tile
   ObjectId object;       // none: miss
   Hit hit;
