@@ -54,8 +54,12 @@ class Grower {
 
   Spawned spawned(std::uint32_t index) {
     RayNode& node = b_.nodes[index];
-    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
+    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.rule());
     node.cut = rays.cut;
+    if (rays.lobes) {
+      node.lobes = static_cast<std::uint32_t>(b_.lobes.size());
+      b_.lobes.push_back(*rays.lobes);
+    }
     return rays;
   }
 
@@ -144,7 +148,7 @@ class Grower {
     if (meeting.object.is_none()) return;
     set_hit(index, meeting.object, meeting.hit);
     b_.nodes[index].t = meeting.t;
-    if (!g_.scene.object(meeting.object).optics.spawns()) return;
+    if (!g_.rule().may_spawn(g_.scene.object(meeting.object))) return;
     for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }
 
