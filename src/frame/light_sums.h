@@ -1,0 +1,42 @@
+// From sums of light to pixels: the frame of the path integrator is a sum of lights. Layer l of a pixel is
+// float32(colour_l x S_l / N) in doubles, where S_l is the exact sum of the light's terms over the pixel's N samples,
+// for a light of colour 1; R, G and B are the float32 sum of the layers, in the order of the lights, and A is
+// float32(coverage / N). Sums while they change: TileSums; as they are kept: PackedSums.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "base/math.h"
+#include "frame/sums/packed_sums.h"
+#include "frame/sums/tile_sums.h"
+
+namespace relook {
+
+/// Colour times intensity of a light, linear RGB.
+using LightColor = std::array<double, 3>;
+
+/// What one light gives to a pixel. Requires, as below: finite colours, at most 1024 samples.
+[[nodiscard]] inline Color layer(const std::array<double, 3>& sum, const LightColor& color, std::uint32_t samples) {
+  return {static_cast<float>(color[0] * sum[0] / samples), static_cast<float>(color[1] * sum[1] / samples),
+          static_cast<float>(color[2] * sum[2] / samples)};
+}
+[[nodiscard]] inline Color layer(const TileSums& sums, std::size_t sum, std::size_t pixel, const LightColor& color,
+                                 std::uint32_t samples) {
+  return layer(sums.value(sum, pixel), color, samples);
+}
+[[nodiscard]] inline Color layer(const PackedSums& sums, std::size_t sum, std::size_t pixel, const LightColor& color,
+                                 std::uint32_t samples) {
+  return layer(sums.value(sum, pixel), color, samples);
+}
+
+/// A pixel. `colors`: of all sums, in their order.
+[[nodiscard]] Rgba compose(const TileSums& sums, std::size_t pixel, std::span<const LightColor> colors,
+                           std::uint32_t samples);
+[[nodiscard]] Rgba compose(const PackedSums& sums, std::size_t pixel, std::span<const LightColor> colors,
+                           std::uint32_t samples);
+/// The same of all pixels of a tile, in less time. `pixels`: [sums.pixels()].
+void compose_tile(const PackedSums& sums, std::span<const LightColor> colors, std::uint32_t samples,
+                  std::span<Rgba> pixels);
+
+}  // namespace relook
