@@ -60,7 +60,7 @@ void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
     std::ranges::copy_if(entry.objects, std::back_inserter(steady_), is_steady);
     if (steady_.empty()) continue;
     const RayLight& light = g_.scene.light(new_light_[old]);
-    auto crossing = rays_.filters(steady_, shadow_segment(node.point, light)).begin();
+    auto crossing = rays_.filters(steady_, shadow_segment(node, light)).begin();
     for (std::size_t i = 0; i < entry.objects.size(); ++i)
       if (is_steady(entry.objects[i])) (*hits_)[first + i] = (crossing++)->hit;
   }

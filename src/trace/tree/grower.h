@@ -102,8 +102,8 @@ class Grower {
   /// The segment to a light, if light is gathered here at all.
   bool gathers(std::uint32_t index, std::size_t light, ShadowSegment& segment) const {
     const RayNode& node = b_.nodes[index];
-    if (is_interface_only(g_.scene.object(node.object), node.point)) return false;
-    segment = shadow_segment(node.point, g_.scene.light(light));
+    if (!is_lit(g_.scene.object(node.object), node)) return false;
+    segment = shadow_segment(node, g_.scene.light(light));
     return segment.faces;
   }
 

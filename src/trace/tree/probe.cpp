@@ -60,7 +60,7 @@ class Prober {
       const ShadowState state = shadow_state(stored.lights, light);
       if (state == ShadowState::facing_away) continue;
       const bool touched = touch.touches(state == ShadowState::blocked, light);
-      const ShadowSegment segment = shadow_segment(node.point, g_.scene.light(light));
+      const ShadowSegment segment = shadow_segment(node, g_.scene.light(light));
       const Ray ray{segment.origin, segment.direction, segment.t_max};
       const auto tests = tests_.tests_shadow(state, touched, ray);
       if (tests.before && crosses(change_.shadows_before, ray)) return true;
