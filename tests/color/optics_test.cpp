@@ -130,13 +130,14 @@ TEST(Optics, MappedNormalsHaveEqualBits) {
 }
 
 TEST(Optics, LobesHaveEqualBits) {
-  expect_equal_bits<9>({kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned},
-                       [](const auto& v) {
-                         const auto at = lobe_angles(vector<0>(v), vector<3>(v), vector<6>(v));
-                         return std::array{at.half.x, at.half.y, at.half.z, at.nl, at.nh, at.vh};
-                       });
+  expect_equal_bits<9>(
+      {kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned}, [](const auto& v) {
+        const auto at = lobe_angles(vector<0>(v), vector<3>(v), vector<6>(v));
+        return std::array{at.half.x, at.half.y, at.half.z, at.nl, at.nh, at.vh, half_sine2(vector<0>(v), at)};
+      });
   expect_equal_bits<4>({kShare, kCosine, kCosine, Range{kLeastCosine, 1}}, [](const auto& v) {
     return std::array{ggx(square(alpha_of(v[0])), v[1], v[2], v[3]),
+                      precise_ggx(square(alpha_of(v[0])), v[1], v[2], v[2], v[3]),
                       sheen(inverse_sheen_alpha(v[0]), v[1], v[2], v[3]),
                       lambert(v[1]),
                       phong_scale(v[0]) * phong_lobe(v[0] * 100.0F, max(v[1], 1e-7F)),

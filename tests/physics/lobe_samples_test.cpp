@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "half_vectors.h"
+#include "physics/basis.h"
 #include "physics/brushed_ggx.h"
 #include "physics/ggx.h"
 #include "physics/glossy_lobe.h"
+#include "physics/lobe_angles.h"
 #include "physics/lobe_buckets.h"
 #include "physics/phong_sample.h"
 #include "physics/sheen.h"
@@ -139,6 +141,34 @@ TEST(LobeSamples, AnotherMemberOfTheBucketGivesTheSameLight) {
         EXPECT_NEAR(mean.value(), integral(a, view, reflected, 150), mean.five_sigma() + 1e-3);
         EXPECT_LT(mean.value(), 1 + mean.five_sigma());
       }
+}
+
+TEST(LobeSamples, NarrowLobesKeepTheirLightInTheWorld) {
+  const Basis basis = basis_about(normalized(Direction(0.3F, 0.5F, 0.8F)));
+  for (const float alpha : {0.0025F, 0.01F, 0.1F})
+    for (const double cosine : kCosines) {
+      SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", cosine " << cosine);
+      const GlossyLobe sampled{alpha, alpha};
+      const Wide view = view_at(cosine, 0.1);
+      const Direction seen = narrow(view);
+      Points points(9);
+      Mean mean;
+      for (int i = 0; i < 10000; ++i) {
+        const std::optional<Direction> way = sampled.sample(seen, points.next());
+        if (!way) {
+          mean.add(0);
+          continue;
+        }
+        const LobeAngles<Direction> at = lobe_angles(basis.z, basis.to_world(seen), basis.to_world(*way));
+        const float value = precise_ggx(alpha * alpha, at.nh, half_sine2(basis.z, at), at.nl, seen.z);
+        mean.add(double{value * at.nl / sampled.density(seen, *way)});
+      }
+      const Alphas a{double{alpha}, double{alpha}};
+      const auto reflected = [&](const Wide& half, const Wide& way) {
+        return way.z > 0 ? lobe(a, view, way, half) * way.z * 4 * view.dot(half) : 0;
+      };
+      EXPECT_NEAR(mean.value(), integral(a, view, reflected, 150), mean.five_sigma() + 1e-3);
+    }
 }
 
 TEST(LobeSamples, ViewsFromBelowAreSampledAtGrazingAngles) {
