@@ -28,9 +28,10 @@ struct Basis {
 [[nodiscard]] inline Basis basis_along(const Normal& n, const Direction& along) {
   const Direction flat = along - n * along.dot(n);
   const float length2 = flat.dot(flat);
-  // What is left of a nearly parallel axis is rounding alone.
   if (!(length2 > 1e-6F * along.dot(along)) || !(length2 > 1e-30F)) return basis_about(n);
-  const Direction x = flat / std::sqrt(length2);
+  // Of a nearly parallel axis much of what is left is rounding, so it is laid flat once more.
+  const Direction tilted = flat / std::sqrt(length2);
+  const Direction x = normalized(tilted - n * tilted.dot(n));
   return {x, n.cross(x), n};
 }
 

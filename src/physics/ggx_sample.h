@@ -34,8 +34,8 @@ namespace relook {
 }
 
 /// Of reflected directions above the surface, per steradian: G1 D / (4 NV), with G1 of Smith (Heitz 2014, equation 43).
-/// Its integral over these is the share of visible normals that reflect upwards. `view`: local and facing; `way`: local,
-/// of length 1.
+/// Its integral over these is the share of visible normals that reflect upwards. `view`: local and facing; `way`:
+/// local, of length 1.
 [[nodiscard]] inline float ggx_reflection_density(float alpha_x, float alpha_y, const Direction& view,
                                                   const Direction& way) {
   if (!(way.z > 0.0F)) return 0.0F;

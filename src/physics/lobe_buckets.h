@@ -8,8 +8,8 @@
 
 namespace relook {
 
-/// The alphas in [2^k, 2^(k+1)), for k from -9 on; [1/2, 1] for k = -1, so that the usual roughness of 1 has no bucket to
-/// itself; everything below 2^-9 lies in the lowest (alpha_of is never that narrow).
+/// The alphas in [2^k, 2^(k+1)), for k from -9 on; [1/2, 1] for k = -1, so that the usual roughness of 1 has no bucket
+/// to itself; everything below 2^-9 lies in the lowest (alpha_of is never that narrow).
 struct AlphaBucket {
   std::int8_t k;
 

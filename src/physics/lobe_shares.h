@@ -37,8 +37,7 @@ inline constexpr float kLeastShare = 0.1F;
                                             float coat) {
   const float below = (lobes.diffuse ? kLeastShare : 0.0F) + (lobes.specular ? kLeastShare : 0.0F);
   LobeShares shares{0, 0, 0};
-  if (lobes.coat)
-    shares.coat = below == 0.0F ? 1.0F : min(max(share_of_reflection(coat), kLeastShare), 1.0F - below);
+  if (lobes.coat) shares.coat = below == 0.0F ? 1.0F : min(max(share_of_reflection(coat), kLeastShare), 1.0F - below);
   const float rest = 1.0F - shares.coat;
   if (lobes.diffuse && lobes.specular) {
     const float specular = metallic == MetallicBucket::dielectric ? share_of_reflection(reflectance)
