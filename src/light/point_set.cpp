@@ -23,8 +23,8 @@ constexpr std::uint32_t reversed(std::uint32_t x) {
   return ((x & 0x55555555U) << 1U) | ((x >> 1U) & 0x55555555U);
 }
 
-/// Owen's nested uniform scrambling of a number whose bits stand in reverse: each bit is flipped or not by a hash of the
-/// seed and of the bits below it. Every step is a permutation in which a bit depends on lower ones only (Laine and
+/// Owen's nested uniform scrambling of a number whose bits stand in reverse: each bit is flipped or not by a hash of
+/// the seed and of the bits below it. Every step is a permutation in which a bit depends on lower ones only (Laine and
 /// Karras 2011, section 3.1). Steps and constants: Vegdahl 2021, "Building a Better LK Hash", but both the summand and
 /// the odd factor come from a seed of 64 bits.
 constexpr std::uint32_t scrambled_from_below(std::uint32_t x, std::uint64_t seed) {

@@ -1,8 +1,8 @@
 // Numbers for choices along a sample's way. Each (pixel, history, purpose, name) has a point set of its own, a sequence
-// over the pixel's samples 0, 1, 2...: Sobol's (0,2)-sequence with Owen's nested uniform scrambling, its index scrambled
-// likewise (Burley 2020, "Practical Hash-based Owen Scrambling"). So samples of a pixel are stratified within a set
-// (each 2^m of them, from a multiple of 2^m on, are a (0,m,2)-net) and sets are independent of each other. A number
-// follows from its key alone, in integers: whatever order samples are made in, on every machine.
+// over the pixel's samples 0, 1, 2...: Sobol's (0,2)-sequence with Owen's nested uniform scrambling, its index
+// scrambled likewise (Burley 2020, "Practical Hash-based Owen Scrambling"). So samples of a pixel are stratified within
+// a set (each 2^m of them, from a multiple of 2^m on, are a (0,m,2)-net) and sets are independent of each other. A
+// number follows from its key alone, in integers: whatever order samples are made in, on every machine.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -22,8 +22,8 @@ struct SampleKey {
 /// What a number decides. Enumerators keep their values: they are hashed.
 enum class Purpose : std::uint8_t { pixel = 0, lens = 1, lobe = 2, light = 3, coverage = 4 };
 
-/// In [0, 1)^2, multiples of 2^-24. `history`: of the branch that asks, from child_history; `name`: tells apart what one
-/// purpose asks for at one vertex (a light by its name_hash).
+/// In [0, 1)^2, multiples of 2^-24. `history`: of the branch that asks, from child_history; `name`: tells apart what
+/// one purpose asks for at one vertex (a light by its name_hash).
 [[nodiscard]] Uv sample_point(const SampleKey& key, std::uint64_t history, Purpose purpose, std::uint64_t name = 0);
 /// A single number, likewise stratified, independent of sample_point of the same arguments.
 [[nodiscard]] float sample_number(const SampleKey& key, std::uint64_t history, Purpose purpose, std::uint64_t name = 0);
