@@ -22,7 +22,9 @@ inline constexpr std::size_t kSectionCount = 8;
 /// A look document with what it refers to.
 struct LookDocument {
   Json look;                                                  // see README.md, "The look document"
-  std::array<std::vector<std::string>, kSectionCount> order;  // glTF index -> name, per section (numbers as names)
+  // glTF index -> name, per section (numbers as names). Of lights those of KHR_lights_punctual; then, if there are any
+  // of EXT_lights_area, a gap "" and these.
+  std::array<std::vector<std::string>, kSectionCount> order;
   std::map<std::string, std::vector<Transform>, std::less<>> instances;  // node name -> EXT_mesh_gpu_instancing
   std::map<std::string, std::vector<Transform>, std::less<>> inverse_binds;  // skin name -> a matrix a joint
   Json cameras;  // glTF cameras by name: {"node": name or "", "camera": {...}, "index": glTF's}

@@ -12,7 +12,7 @@ namespace relook {
 
 /// What is used, by index into glTF's arrays. Materials of variants count as used: one edit shows them.
 struct GltfUse {
-  std::vector<bool> nodes, cameras, lights, meshes, skins, materials, textures, images, samplers;
+  std::vector<bool> nodes, cameras, lights, area_lights, meshes, skins, materials, textures, images, samplers;
   std::vector<bool> skinned_meshes;  // of a node with a skin
   struct Primitive {
     std::array<bool, 2> uv{};  // TEXCOORD_n is read by a texture of its materials
@@ -28,7 +28,9 @@ struct GltfUse {
 /// Requires: every index in `gltf` is in range and its nodes are trees. Other values may be wrong.
 [[nodiscard]] GltfUse gltf_use(const Json& gltf);
 
-/// glTF's array behind a section or the cameras; an empty one where there is none.
+/// glTF's array behind a section or the cameras; an empty one where there is none. Of lights that of
+/// KHR_lights_punctual; the other is that of EXT_lights_area.
 [[nodiscard]] const Json& gltf_array(const Json& gltf, Section section);
+[[nodiscard]] const Json& gltf_area_lights(const Json& gltf);
 
 }  // namespace relook
