@@ -32,4 +32,13 @@ template <class S>
   return distribution * ggx_visibility(alpha2, nl, nv);
 }
 
+/// The same as ggx, with the squared sine beside the cosine (half_sine2): ggx_distribution loses 1 to 3 % of the light
+/// of the narrowest lobes in the rounding of nh^2.
+template <class S>
+[[nodiscard]] S precise_ggx(S alpha2, S nh, S sine2, S nl, S nv) {
+  const S d = max(nh * nh * alpha2 + sine2, 1e-9F);  // no half vector lies between opposite directions
+  const S distribution = alpha2 * kInversePi / (d * d);
+  return distribution * ggx_visibility(alpha2, nl, nv);
+}
+
 }  // namespace relook

@@ -19,4 +19,12 @@ template <class V>
   return {half, max(dot(normal, light), 0.0F), min(max(dot(normal, half), 0.0F), 1.0F), max(dot(view, half), 0.0F)};
 }
 
+/// The squared sine of `half` with the normal: of what is left of it along the surface, as 1 - nh^2 would be rounding
+/// alone where lobes are narrow.
+template <class V>
+[[nodiscard]] ScalarOf<V> half_sine2(const V& normal, const LobeAngles<V>& at) {
+  const V flat = at.half - normal * at.nh;
+  return dot(flat, flat);
+}
+
 }  // namespace relook

@@ -75,7 +75,7 @@ class Collector {
     const LightId id = scene_.light_order[place];
     const Light& light = scene_.light(id);
     SegmentFacts& segment = facts_.segments[{sample, route, id}];
-    segment = {"light " + light.light + " on " + route, link.state, {}, shadow_segment(node.point, light)};
+    segment = {"light " + light.light + " on " + route, link.state, {}, shadow_segment(node, light)};
     std::string through;
     for (std::uint32_t i = 0; link.state == ShadowState::filtered && i < link.filters; ++i) {
       const ObjectId filter = block_.filters[link.first + i].object;

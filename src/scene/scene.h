@@ -10,6 +10,7 @@
 #include "base/id.h"
 #include "base/math.h"
 #include "scene/camera.h"
+#include "scene/integrator.h"
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/mesh.h"
@@ -57,22 +58,35 @@ struct Object {
   bool operator==(const Object&) const = default;
 };
 
-/// What rays that miss everything see (extras.relook of the scene).
+/// What the camera sees instead of the environment, directly and through what does not bend its rays.
+struct Background {
+  Color color{0, 0, 0};        // multiplies the image, if there is one
+  float intensity = 1;
+  float rotation = 0;          // radians about +y
+  std::shared_ptr<const TexturePyramid> image;  // as the environment's
+  bool operator==(const Background&) const = default;
+};
+
+/// What rays that miss everything see (extras.relook of the scene). Under Integrator::path it lights everything.
 struct Environment {
   Color color{0, 0, 0};        // multiplies the image, if there is one
   float intensity = 1;
   float rotation = 0;          // radians about +y
   std::shared_ptr<const TexturePyramid> image;  // lat-long, +y up, -z in the middle
+  std::optional<Background> background;         // none: the camera sees the environment; none under whitted
   bool operator==(const Environment&) const = default;
 };
 
 struct Scene {
+  Integrator integrator = Integrator::whitted;
   std::shared_ptr<const Assets> assets;
   Camera camera;
   std::vector<Material> materials;  // indexed by MaterialId; the default material stands behind the first document's
   std::vector<Object> objects;      // indexed by ObjectId
   std::vector<Light> lights;        // indexed by LightId
-  std::vector<LightId> light_order; // living lights by node name: the order of every sum over lights
+  // Living lights: the order of every sum over lights. By node name; under Integrator::path then the suns, then the
+  // emission of materials by their names.
+  std::vector<LightId> light_order;
   Color ambient{0, 0, 0};
   Environment environment;
 

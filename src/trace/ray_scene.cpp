@@ -4,6 +4,7 @@
 #include <map>
 
 #include "scene/material_fields.h"
+#include "trace/light/emission_source.h"
 
 namespace relook {
 namespace {
@@ -41,8 +42,14 @@ class UserLists {
   std::map<std::size_t, std::shared_ptr<std::vector<ObjectId>>> changed_;  // by MaterialId
 };
 
-bool same_place(const RayLight& a, const Light& b) {
-  return a.kind == b.kind && a.position == b.position && a.direction == b.direction;
+/// The objects that emit with a material, in the order of their keys.
+std::vector<EmissionSource::Placed> emitting_objects(const SharedTable<RayObject>& objects,
+                                                     const std::vector<ObjectId>& users) {
+  std::vector<EmissionSource::Placed> placed;
+  for (const ObjectId id : users)
+    if (objects[id.index()].alive) placed.push_back({id, objects.share(id.index())});
+  std::ranges::sort(placed, {}, [](const EmissionSource::Placed& one) { return one.object->key; });
+  return placed;
 }
 
 /// Do rays leave hits, or pass holes, by values that differ? If not, and optics and tangents stay, entries keep the
@@ -77,16 +84,38 @@ void RayScene::apply(Tables& tables, const Scene& scene, const SceneDelta& delta
   for (std::size_t i = tables.materials.size(); i < scene.materials.size(); ++i)
     tables.materials.push_back(std::make_shared<const Material>(scene.materials[i]));
   apply_to_objects(tables, scene, delta);
-  const Lights& lights = *tables.lights;
-  const auto stays = [&](std::size_t place) {
-    return same_place(lights.placed[place], scene.light(scene.light_order[place]));
-  };
-  bool all_stay = lights.order == scene.light_order;
-  for (std::size_t place = 0; all_stay && place < lights.order.size(); ++place) all_stay = stays(place);
-  if (all_stay) return;
-  Lights now{scene.light_order, {}};
-  for (const LightId id : now.order) now.placed.emplace_back(scene.light(id));
-  tables.lights = std::make_shared<const Lights>(std::move(now));
+  apply_to_lights(tables, scene);
+}
+
+/// What of them is as it was is shared, so that an edit of colours leaves all of it.
+void RayScene::apply_to_lights(Tables& tables, const Scene& scene) {
+  const Lights& before = *tables.lights;
+  Lights now{scene.light_order, {}, before.environment, before.image};
+  if (scene.integrator == Integrator::path && (!now.environment || now.image != scene.environment.image)) {
+    now.image = scene.environment.image;
+    now.environment = std::make_shared<const EnvironmentLight>(now.image);
+  }
+  bool all_stay = before.order == now.order && before.environment == now.environment;
+  for (std::size_t place = 0; place < now.order.size(); ++place) {
+    const Light& light = scene.light(now.order[place]);
+    RayLight ray_light(light, scene.integrator);
+    if (light.kind == LightKind::suns) ray_light.environment = now.environment;
+    if (light.kind == LightKind::emission) {
+      std::vector<EmissionSource::Placed> objects =
+          emitting_objects(tables.objects, tables.users[light.material.index()]);
+      const auto known = std::ranges::find(before.order, now.order[place]);
+      const EmissionSource* source =
+          known != before.order.end() ? before.placed[static_cast<std::size_t>(known - before.order.begin())].emission.get()
+                                      : nullptr;
+      ray_light.emission =
+          source != nullptr && source->is_of(light.emission, objects)
+              ? before.placed[static_cast<std::size_t>(known - before.order.begin())].emission
+              : std::make_shared<const EmissionSource>(light.emission, std::move(objects));
+    }
+    all_stay = all_stay && ray_light.same_place(before.placed[place]);
+    now.placed.push_back(std::move(ray_light));
+  }
+  if (!all_stay) tables.lights = std::make_shared<const Lights>(std::move(now));
 }
 
 void RayScene::apply_to_objects(Tables& tables, const Scene& scene, const SceneDelta& delta) {
@@ -112,7 +141,8 @@ void RayScene::apply_to_objects(Tables& tables, const Scene& scene, const SceneD
   std::move(users).write(tables.users, scene.materials.size());
   for (const auto& change : delta.materials) {
     const std::shared_ptr<const Material>& material = tables.materials.share(change.id.index());
-    const bool turns_rays = turns_rays_otherwise(change.before, *material);
+    const bool turns_rays =
+        scene.integrator == Integrator::path || turns_rays_otherwise(change.before, *material);
     for (const ObjectId user : tables.users[change.id.index()]) {
       const RayObject& before = tables.objects[user.index()];
       if (before.material == material) continue;  // made anew above

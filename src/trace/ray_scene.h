@@ -7,20 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include "trace/light/ray_light.h"
 #include "trace/ray_object.h"
 #include "trace/shared_table.h"
 
 namespace relook {
-
-/// What shadow segments need of a light.
-struct RayLight {
-  LightKind kind = LightKind::point;
-  Point position{0, 0, 0};        // where it has a place
-  Direction direction{0, 0, -1};  // where it has one: unit, the way the light travels
-
-  RayLight() = default;
-  RayLight(const Light& light) : kind(light.kind), position(light.position), direction(light.direction) {}
-};
 
 /// Cheap to copy: copies are one scene.
 class RayScene {
@@ -41,6 +32,10 @@ class RayScene {
   /// Living lights by node name, as Scene has them, and each at its place in that order.
   [[nodiscard]] const std::vector<LightId>& light_order() const { return tables_->lights->order; }
   [[nodiscard]] const RayLight& light(std::size_t place) const { return tables_->lights->placed[place]; }
+  /// The environment's image in its parts; null under Integrator::whitted.
+  [[nodiscard]] const std::shared_ptr<const EnvironmentLight>& environment() const {
+    return tables_->lights->environment;
+  }
   [[nodiscard]] const Camera& camera() const { return *tables_->camera; }
 
   [[nodiscard]] std::size_t material_count() const { return tables_->users.size(); }
@@ -54,6 +49,8 @@ class RayScene {
   struct Lights {
     std::vector<LightId> order;
     std::vector<RayLight> placed;  // in this order
+    std::shared_ptr<const EnvironmentLight> environment;
+    std::shared_ptr<const TexturePyramid> image;  // of it
   };
   struct Tables {
     SharedTable<RayObject> objects;            // by ObjectId
@@ -67,6 +64,7 @@ class RayScene {
   explicit RayScene(std::shared_ptr<const Tables> tables)
       : tables_(std::move(tables)), objects_(tables_->objects.entries()) {}
   static void apply(Tables& tables, const Scene& scene, const SceneDelta& delta);
+  static void apply_to_lights(Tables& tables, const Scene& scene);
   static void apply_to_objects(Tables& tables, const Scene& scene, const SceneDelta& delta);
 
   std::shared_ptr<const Tables> tables_;

@@ -40,7 +40,7 @@ TreeBlock block;
       result.rays.push_back({node.ray.origin, node.ray.direction});
       for (std::size_t light = 0; !node.object.is_none() && light < ray_scene.light_order().size(); ++light) {
         if (block.lights[node.first_light + light].state == ShadowState::facing_away) continue;
-        const ShadowSegment segment = shadow_segment(node.point, ray_scene.light(light));
+        const ShadowSegment segment = shadow_segment(node, ray_scene.light(light));
         result.shadows.push_back({segment.origin, segment.direction, segment.t_max});
       }
     }

@@ -15,6 +15,7 @@
 #include "physics/ggx.h"
 #include "physics/lambert.h"
 #include "physics/lobe_angles.h"
+#include "physics/lobe_buckets.h"
 #include "physics/mirror.h"
 #include "physics/normal_map.h"
 #include "physics/phong.h"
@@ -129,15 +130,20 @@ TEST(Optics, MappedNormalsHaveEqualBits) {
 }
 
 TEST(Optics, LobesHaveEqualBits) {
-  expect_equal_bits<9>({kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned},
-                       [](const auto& v) {
-                         const auto at = lobe_angles(vector<0>(v), vector<3>(v), vector<6>(v));
-                         return std::array{at.half.x, at.half.y, at.half.z, at.nl, at.nh, at.vh};
-                       });
+  expect_equal_bits<9>(
+      {kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned, kSigned}, [](const auto& v) {
+        const auto at = lobe_angles(vector<0>(v), vector<3>(v), vector<6>(v));
+        return std::array{at.half.x, at.half.y, at.half.z, at.nl, at.nh, at.vh, half_sine2(vector<0>(v), at)};
+      });
   expect_equal_bits<4>({kShare, kCosine, kCosine, Range{kLeastCosine, 1}}, [](const auto& v) {
-    return std::array{ggx(square(alpha_of(v[0])), v[1], v[2], v[3]), sheen(inverse_sheen_alpha(v[0]), v[1], v[2], v[3]),
-                      lambert(v[1]), phong_scale(v[0]) * phong_lobe(v[0] * 100.0F, max(v[1], 1e-7F)),
-                      mirror_fade(v[0], 0.25F)};
+    return std::array{ggx(square(alpha_of(v[0])), v[1], v[2], v[3]),
+                      precise_ggx(square(alpha_of(v[0])), v[1], v[2], v[2], v[3]),
+                      sheen(inverse_sheen_alpha(v[0]), v[1], v[2], v[3]),
+                      lambert(v[1]),
+                      phong_scale(v[0]) * phong_lobe(v[0] * 100.0F, max(v[1], 1e-7F)),
+                      mirror_fade(v[0], 0.25F),
+                      floored(v[0], 0.125F),
+                      floored(v[0], v[1])};
   });
   expect_equal_bits<5>({kShare, kShare, kShare, kCosine, kShare},
                        [](const auto& v) { return std::array{below_sheen(vector<0>(v), v[3], v[4])}; });

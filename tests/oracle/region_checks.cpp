@@ -67,7 +67,7 @@ class TreeCheck {
   [[nodiscard]] bool has_shadow(const RayNode& node, History history, std::size_t light, ShadowState state) const {
     const TunnelSection* own = section(history);
     const LightEnd end = light_ends(scene_)[light];
-    const ShadowSegment segment = shadow_segment(node.point, scene_.light(scene_.light_order[light]));
+    const ShadowSegment segment = shadow_segment(node, scene_.light(scene_.light_order[light]));
     const LightSet lights = state == ShadowState::blocked ? own->blocked : own->open;
     if (!lights.has(light)) return false;
     const Box to = end.directional ? extruded(own->points, end.end, 50).to : end.end;

@@ -106,7 +106,7 @@ void compare_links(const Scene& scene, const TreeBlock& block, const std::vector
     for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light) {
       const LightLink& link = block.lights[node.first_light + light];
       if (link.state == ShadowState::facing_away) continue;
-      const ShadowSegment segment = shadow_segment(node.point, scene.light(scene.light_order[light]));
+      const ShadowSegment segment = shadow_segment(node, scene.light(scene.light_order[light]));
       if (!cross_all(triangles, segment, crossings)) {
         ++counts.unclear;
         continue;
@@ -230,7 +230,7 @@ std::vector<ShadowSegment> shadow_segments(const Replayer& replayer) {
     for (const RayNode& node : block.nodes)
       for (std::size_t light = 0; !node.object.is_none() && light < scene.light_order.size(); ++light)
         if (block.lights[node.first_light + light].state != ShadowState::facing_away)
-          segments.push_back(shadow_segment(node.point, scene.light(scene.light_order[light])));
+          segments.push_back(shadow_segment(node, scene.light(scene.light_order[light])));
   }
   return segments;
 }

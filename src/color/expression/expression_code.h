@@ -57,6 +57,14 @@ enum class Input : std::uint8_t {
   child_length,  // which: branch
   tint,          // by axis: channel; which: index in the light order
   reached,       // does that light reach the node, 1 or 0; which: index in the light order
+  // of the path integrator
+  child_direction,  // by axis; which: branch
+  child_share,      // 1 / (density of the direction * share of its lobe), steradians; which: branch
+  alpha_floor,      // least alpha of reflecting lobes
+  cosine,           // of a filter: of the shadow segment with the geometric normal
+  light_direction,  // by axis: unit, towards the sample of the light at hand
+  light_weight,     // by axis: of diffuse, specular and coat lobe
+  light_radiance,   // by axis: channel; of that sample at unit colour and intensity
 };
 
 /// What an instruction has beside its operands. Op says which of these it is.

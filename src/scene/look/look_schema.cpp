@@ -199,7 +199,7 @@ const Schema& light_schema() {
   static const Schema spot{{number("innerConeAngle", 0.0, 0, kRightAngle),
                             number("outerConeAngle", 0.7853981633974483, 0, kRightAngle)}};
   constexpr auto kWords = light_words();
-  static const Schema light{{text("name"), choice("type", {}, {kWords.begin(), kWords.end()}, true),
+  static const Schema light{{text("name"), choice("type", {}, {kWords.begin(), kWords.begin() + kDocumentLightKinds}, true),
                              reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kLargest),
                              unwritten(number("range", {}, kAboveZero, kHuge)), optional("spot", spot)}};
   return light;

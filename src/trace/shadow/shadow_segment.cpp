@@ -1,21 +1,53 @@
 #include "trace/shadow/shadow_segment.h"
 
 #include <cmath>
+#include <optional>
+
+#include "trace/light/light_sample.h"
 
 namespace relook {
 
-ShadowSegment shadow_segment(const SurfacePoint& point, const RayLight& light) {
+namespace {
+
+/// What a segment runs to, as seen from a hit.
+struct Target {
+  Direction way;             // any length
+  bool has_place = true;
+  Point at{0, 0, 0};         // where it has one
+  float reach = 1;           // how far of the way
+};
+
+std::optional<Target> target_of(const RayNode& node, const RayLight& light) {
+  const Point& from = node.point.position;
+  if (!light.is_soft()) {
+    if (!is_sampled(light, node)) return std::nullopt;
+    if (traits_of(light.kind).has_place) return Target{light.position - from, true, light.position};
+    return Target{-light.direction, false};
+  }
+  const auto sample = sample_light(light, node);
+  if (!sample) return std::nullopt;
+  if (sample->distance == std::numeric_limits<float>::infinity()) return Target{sample->way, false};
+  // Surfaces that shine would block the segments to them: those end a little before.
+  constexpr float kBefore = 1.0F - 0x1p-12F;
+  return Target{sample->way, true, from + sample->way * sample->distance, light.emission ? kBefore : 1.0F};
+}
+
+}  // namespace
+
+ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
+  const SurfacePoint& point = node.point;
   ShadowSegment segment;
-  const bool directional = !traits_of(light.kind).has_place;
-  const Direction to_light = directional ? -light.direction : light.position - point.position;
+  const auto target = target_of(node, light);
+  if (!target) return segment;
+  const Direction& to_light = target->way;
   segment.faces = point.shading.dot(to_light) > 0;
   // A light near the horizon of the triangle is judged from the smooth surface.
   constexpr float kHorizon = 0.1F;  // cosine
   const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));
   const float share = std::fmin(std::fmax(1.0F - height / kHorizon, 0.0F), 1.0F);
   segment.origin = point.position + point.lift * share + point.geometric * point.offset;
-  segment.direction = directional ? to_light : light.position - segment.origin;
-  segment.t_max = directional ? std::numeric_limits<float>::infinity() : 1.0F;
+  segment.direction = target->has_place ? target->at - segment.origin : to_light;
+  segment.t_max = target->has_place ? target->reach : std::numeric_limits<float>::infinity();
   return segment;
 }
 
@@ -27,6 +59,7 @@ void complete_filters(const RayScene& scene, const RayNode& node, const ShadowSe
     const RayObject& object = scene.object(filter.object);
     filter.point = surface_point(object, filter.hit, way);
     filter.footprint = node.footprint;  // no finer than what is shaded
+    filter.cosine = -way.dot(filter.point.geometric);
     filter.length_inside = 0;
     if (!object.optics.volume || !filter.point.inside) continue;
     Point entry = segment.origin;

@@ -7,17 +7,17 @@
 
 namespace relook {
 
-/// The shadow segment from a point to a light: t runs to 1 at a point or spot light.
+/// The shadow segment from a hit to a light, or to its sample: t runs to 1 where that has a place.
 struct ShadowSegment {
-  bool faces = false;  // the light is above the smooth surface
+  bool faces = false;  // the light is above the smooth surface, and sampled at all
   Point origin{0, 0, 0};
   Direction direction{0, 0, 1};
   float t_max = 1;
 };
-[[nodiscard]] ShadowSegment shadow_segment(const SurfacePoint& point, const RayLight& light);
-/// True where no light is gathered and no segments are kept: the inner side of a volume.
-[[nodiscard]] inline bool is_interface_only(const RayObject& object, const SurfacePoint& point) {
-  return object.optics.volume && point.inside;
+[[nodiscard]] ShadowSegment shadow_segment(const RayNode& node, const RayLight& light);
+/// False where no light is gathered and no segments are kept: the inner side of a volume, and where rays only gather.
+[[nodiscard]] inline bool is_lit(const RayObject& object, const RayNode& node) {
+  return !(object.optics.volume && node.point.inside) && !node.ray.path.gathers;
 }
 
 /// Completes the `count` filters of one segment of `node`, in its order: points, footprints, lengths inside volumes.

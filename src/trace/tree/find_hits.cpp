@@ -60,7 +60,7 @@ void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
     std::ranges::copy_if(entry.objects, std::back_inserter(steady_), is_steady);
     if (steady_.empty()) continue;
     const RayLight& light = g_.scene.light(new_light_[old]);
-    auto crossing = rays_.filters(steady_, shadow_segment(node.point, light)).begin();
+    auto crossing = rays_.filters(steady_, shadow_segment(node, light)).begin();
     for (std::size_t i = 0; i < entry.objects.size(); ++i)
       if (is_steady(entry.objects[i])) (*hits_)[first + i] = (crossing++)->hit;
   }
@@ -70,14 +70,14 @@ void HitFinder::find_children(const RayNode& node, const PathNode& stored, const
   const RayObject& object = g_.scene.object(node.object);
   const bool respawns = has_flag(node.object, RayChange::respawns);
   const RayObject& then = respawns ? change_.before[change_.before_index[node.object.index()]] : object;
-  if (!then.optics.spawns() && stored.children() == 0) return;
-  const Spawned old = spawn(node, then, g_.max_depth);
+  if (!g_.rule().may_spawn(then) && stored.children() == 0) return;
+  const Spawned old = spawn(node, then, g_.rule());
   if (old.branches != stored.branches()) refuse_trees();
   Spawned rays = old;
   if (respawns || now.fresnel_product != node.ray.fresnel_product) {
     RayNode as_now = node;
     as_now.ray = now;
-    rays = spawn(as_now, object, g_.max_depth);
+    rays = spawn(as_now, object, g_.rule());
   }
   for (std::size_t b = 0; b < kBranches; ++b) {
     const auto branch = static_cast<Branch>(b);

@@ -46,7 +46,7 @@ class Expander {
         grower_.set_filters(index, light, segment, grower_.filters_);
       }
     }
-    if (!grower_.grow().scene.object(node.object).optics.spawns() && node.children() == 0) return index;
+    if (!grower_.grow().rule().may_spawn(grower_.grow().scene.object(node.object)) && node.children() == 0) return index;
     const Spawned rays = grower_.spawned(index);
     if (rays.branches != node.branches()) refuse_trees();
     grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });

@@ -10,6 +10,7 @@
 #include "trace/tracer.h"
 #include "trace/tree/path_cursor.h"
 #include "trace/tree/segment_counts.h"
+#include "trace/tree/spawn.h"
 #include "trace/tree/touch.h"
 #include "trace/tree/tree_block.h"
 
@@ -44,7 +45,10 @@ struct GrowScene {
   std::uint32_t max_depth = 6;
   std::uint32_t shadow_bits = 0;  // of shadow counters; more than 0: the level is of a tracer that counts blockers
   const ObjectLevels* objects = nullptr;  // for hits, or distances of hits, that are not kept; null: all are known
+  Integrator integrator = Integrator::whitted;
+  std::uint32_t diffuse_depth = 0, glossy_depth = 4;  // bounces, of the path integrator
 
+  [[nodiscard]] SpawnRule rule() const { return {max_depth, integrator, diffuse_depth, glossy_depth}; }
   [[nodiscard]] PathLayout layout() const { return {scene.light_order().size(), shadow_bits}; }
 };
 

@@ -54,8 +54,12 @@ class Grower {
 
   Spawned spawned(std::uint32_t index) {
     RayNode& node = b_.nodes[index];
-    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
+    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.rule());
     node.cut = rays.cut;
+    if (rays.lobes) {
+      node.lobes = static_cast<std::uint32_t>(b_.lobes.size());
+      b_.lobes.push_back(*rays.lobes);
+    }
     return rays;
   }
 
@@ -98,8 +102,8 @@ class Grower {
   /// The segment to a light, if light is gathered here at all.
   bool gathers(std::uint32_t index, std::size_t light, ShadowSegment& segment) const {
     const RayNode& node = b_.nodes[index];
-    if (is_interface_only(g_.scene.object(node.object), node.point)) return false;
-    segment = shadow_segment(node.point, g_.scene.light(light));
+    if (!is_lit(g_.scene.object(node.object), node)) return false;
+    segment = shadow_segment(node, g_.scene.light(light));
     return segment.faces;
   }
 
@@ -144,7 +148,7 @@ class Grower {
     if (meeting.object.is_none()) return;
     set_hit(index, meeting.object, meeting.hit);
     b_.nodes[index].t = meeting.t;
-    if (!g_.scene.object(meeting.object).optics.spawns()) return;
+    if (!g_.rule().may_spawn(g_.scene.object(meeting.object))) return;
     for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }
 

@@ -8,7 +8,7 @@
 namespace relook {
 
 /// 0 the eye, 1 the hit of the primary ray, 4 h + 1 + branch a child of h; where colours part, the three refracted rays
-/// share the number of one. Histories that would leave 28 bits are their parent's: such a section encloses all that is
+/// share the number of one, and a diffuse ray has that of a reflection. Histories that would leave 28 bits are their parent's: such a section encloses all that is
 /// below it.
 class History {
  public:
@@ -18,7 +18,9 @@ class History {
   [[nodiscard]] static constexpr History of_number(std::uint32_t number) { return History(number); }
 
   [[nodiscard]] constexpr History child(Branch branch) const {
-    const Branch kind = BranchSet::parted().has(branch) ? Branch::refraction : branch;
+    const Branch kind = BranchSet::parted().has(branch) ? Branch::refraction
+                        : branch == Branch::diffuse     ? Branch::reflection
+                                                        : branch;
     const History below(4 * number_ + 1 + static_cast<std::uint32_t>(kind));
     return below.number_ < kEnd ? below : *this;
   }

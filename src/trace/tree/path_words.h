@@ -19,13 +19,14 @@ enum class ShadowState : std::uint8_t {
 };
 
 /// What a path says of a hit beside its object. Bits 0..3: branches 0..3 are spawned; 4: on the inner side; 5..7:
-/// branches 4..6 are spawned; 8..14: branches that the Fresnel cut-off removed.
+/// branches 4..6 are spawned; 8..15: branches that the Fresnel cut-off removed; 16: branch 7 is spawned.
 class NodeFlags {
  public:
   constexpr NodeFlags() = default;
   constexpr NodeFlags(BranchSet branches, bool inside, BranchSet cut)
       : word_((branches.bits() & kLowBranches) | static_cast<std::uint32_t>(branches.bits() & kHighBranches) << 1 |
-              (inside ? kInside : 0U) | static_cast<std::uint32_t>(cut.bits()) << kCutShift) {}
+              (branches.has(Branch::diffuse) ? kDiffuse : 0U) | (inside ? kInside : 0U) |
+              static_cast<std::uint32_t>(cut.bits()) << kCutShift) {}
   [[nodiscard]] static constexpr NodeFlags of_word(std::uint32_t word) {
     NodeFlags flags;
     flags.word_ = word;
@@ -33,21 +34,23 @@ class NodeFlags {
   }
   [[nodiscard]] constexpr std::uint32_t word() const { return word_; }
   /// Are all bits known ones?
-  [[nodiscard]] constexpr bool is_sound() const { return word_ >> kCutShift <= BranchSet::all().bits(); }
+  [[nodiscard]] constexpr bool is_sound() const { return word_ < 2 * kDiffuse; }
 
   [[nodiscard]] constexpr BranchSet branches() const {
-    return BranchSet::of_bits(static_cast<std::uint8_t>((word_ & kLowBranches) | (word_ >> 1 & kHighBranches)));
+    return BranchSet::of_bits(static_cast<std::uint8_t>((word_ & kLowBranches) | (word_ >> 1 & kHighBranches) |
+                                                        (word_ & kDiffuse) >> kDiffuseShift));
   }
   [[nodiscard]] constexpr bool inside() const { return (word_ & kInside) != 0; }
   /// Requires: is_sound().
   [[nodiscard]] constexpr BranchSet cut() const {
-    return BranchSet::of_bits(static_cast<std::uint8_t>(word_ >> kCutShift));
+    return BranchSet::of_bits(static_cast<std::uint8_t>(word_ >> kCutShift & BranchSet::all().bits()));
   }
   friend constexpr bool operator==(NodeFlags, NodeFlags) = default;
 
  private:
-  static constexpr std::uint32_t kLowBranches = 0xFU, kHighBranches = BranchSet::parted().bits(), kInside = 1U << 4;
-  static constexpr unsigned kCutShift = 8;
+  static constexpr std::uint32_t kLowBranches = 0xFU, kHighBranches = BranchSet::parted().bits(), kInside = 1U << 4,
+                                 kDiffuse = 1U << 16;
+  static constexpr unsigned kCutShift = 8, kDiffuseShift = 9;  // from its bit to that of BranchSet
   std::uint32_t word_ = 0;
 };
 static_assert(sizeof(NodeFlags) == sizeof(std::uint32_t));

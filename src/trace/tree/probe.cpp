@@ -60,7 +60,7 @@ class Prober {
       const ShadowState state = shadow_state(stored.lights, light);
       if (state == ShadowState::facing_away) continue;
       const bool touched = touch.touches(state == ShadowState::blocked, light);
-      const ShadowSegment segment = shadow_segment(node.point, g_.scene.light(light));
+      const ShadowSegment segment = shadow_segment(node, g_.scene.light(light));
       const Ray ray{segment.origin, segment.direction, segment.t_max};
       const auto tests = tests_.tests_shadow(state, touched, ray);
       if (tests.before && crosses(change_.shadows_before, ray)) return true;
@@ -73,7 +73,7 @@ class Prober {
   }
 
   bool probe_children(const RayNode& node, const PathNode& stored, History history) {
-    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.max_depth);
+    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.rule());
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
       if (stored.has_child(branch) && probe(rays.ray(branch), history.child(branch))) return true;

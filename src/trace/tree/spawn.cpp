@@ -5,6 +5,7 @@
 #include "physics/dispersion.h"
 #include "physics/fresnel.h"
 #include "physics/mirror.h"
+#include "trace/tree/lobes.h"
 
 namespace relook {
 namespace {
@@ -34,21 +35,24 @@ float channel_ior(const SurfaceOptics& optics, Channel channel) {
 /// Collects the rays of one hit.
 class Spawner {
  public:
-  Spawner(const RayNode& node, const RayObject& object, std::uint32_t max_depth)
-      : node_(node), object_(object), may_spawn_(node.ray.generation < max_depth) {}
+  /// `may_spawn`: is it deep enough for another generation?
+  Spawner(const RayNode& node, const RayObject& object, bool may_spawn)
+      : node_(node), object_(object), may_spawn_(may_spawn) {}
 
-  /// `side`: +1 leaves on the side of the incoming ray, -1 on the other. `fresnel`: factor towards the cut-off.
-  void add(Branch branch, const Direction& direction, float side, float fresnel) {
+  /// `side`: +1 leaves on the side of the incoming ray, -1 on the other. `fresnel`: factor towards the cut-off. Null if
+  /// there is none.
+  SpawnedRay* add(Branch branch, const Direction& direction, float side, float fresnel) {
     SpawnedRay* ray = add(branch, fresnel);
-    if (ray == nullptr) return;
+    if (ray == nullptr) return nullptr;
     ray->origin = node_.point.position + node_.point.geometric * (side * node_.point.offset);
     ray->direction = direction;
     ray->cone_width = node_.ray.cone_width + node_.ray.cone_spread * node_.length;
+    return ray;
   }
   /// A ray that goes straight on.
-  void add_straight(Branch branch, float fresnel) {
+  SpawnedRay* add_straight(Branch branch, float fresnel) {
     SpawnedRay* ray = add(branch, fresnel);
-    if (ray == nullptr) return;
+    if (ray == nullptr) return nullptr;
     ray->origin = node_.ray.origin;
     ray->direction = node_.ray.direction;
     ray->cone_width = node_.ray.cone_width;
@@ -57,8 +61,10 @@ class Spawner {
     ray->behind = {node_.object, node_.hit, node_.t, object_.key};
     ray->travelled = node_.length;
     ray->travelled_slack = distance_slack(node_, object_);
+    return ray;
   }
-  [[nodiscard]] const Spawned& result() const { return spawned_; }
+  void set_may_spawn(bool may_spawn) { may_spawn_ = may_spawn; }
+  [[nodiscard]] Spawned& result() { return spawned_; }
 
  private:
   /// Null if there is none.
@@ -75,6 +81,8 @@ class Spawner {
     ray.generation = static_cast<std::uint8_t>(node_.ray.generation + 1);
     ray.branch = branch;
     ray.channel = channel_of(branch, node_.ray.channel);
+    ray.path = node_.ray.path;
+    ray.path.history = child_history(node_.ray.path.history, static_cast<std::uint32_t>(branch));
     spawned_.branches.add(branch);
     return &ray;
   }
@@ -85,64 +93,176 @@ class Spawner {
   Spawned spawned_;
 };
 
-}  // namespace
 
-Spawned spawn(const RayNode& node, const RayObject& object, std::uint32_t max_depth) {
-  const SurfaceOptics& optics = object.optics;
-  Spawner spawner(node, object, max_depth);
-  if (!optics.spawns()) return spawner.result();
-  const Material& material = *object.material;
-  const Direction d = node.ray.direction;
-  const Normal n = normal_of_slot(node, object, Slot::normal, material.normal_scale);
-  const float cosine = std::fmax(-d.dot(n), kLeastCosine);
-  const bool parts = optics.dispersion > 0 && node.ray.channel == Channel::all;
-  const auto eta_of = [&](Channel channel) {
-    const float ior = channel_ior(optics, channel);
-    return node.point.inside && optics.bent ? 1.0F / ior : ior;
-  };
-  // From the inside of a smooth solid, light leaves where the triangle or its vertex normals let it.
-  const float flat_cosine = node.point.inside ? -d.dot(node.point.geometric) : 0.0F;
-  const auto reflectance_of = [&](float eta) {
-    return optics.refracts ? dielectric_reflectance(std::fmin(std::fmax(cosine, flat_cosine), 1.0F), eta) : 1.0F;
-  };
-  const float own_eta = eta_of(node.ray.channel), reflectance = reflectance_of(own_eta);
-  const float counted = optics.counts_in_cutoff ? 1.0F : 0.0F;
-  const auto factor = [&](float term) { return 1.0F - counted + counted * term; };
+/// A hit on its way to the rays that leave it: its normal with the map, cosines, and how much it reflects.
+class Interface {
+ public:
+  Interface(const RayNode& node, const RayObject& object)
+      : node_(node),
+        optics_(object.optics),
+        normal_(normal_of_slot(node, object, Slot::normal, object.material->normal_scale)),
+        cosine_(std::fmax(-node.ray.direction.dot(normal_), kLeastCosine)),
+        // From the inside of a smooth solid, light leaves where the triangle or its vertex normals let it.
+        flat_cosine_(node.point.inside ? -node.ray.direction.dot(node.point.geometric) : 0.0F),
+        parts_(optics_.dispersion > 0 && node.ray.channel == Channel::all) {}
 
-  if (optics.reflects) {
-    float most = reflectance;
-    if (parts)
-      for (const Channel channel : kChannels) most = std::fmax(most, reflectance_of(eta_of(channel)));
-    spawner.add(Branch::reflection, mirrored(d, n, node.point.geometric), 1.0F, factor(most));
+  [[nodiscard]] const Normal& normal() const { return normal_; }
+  /// How much of the terms that count towards the cut-off `term` is.
+  [[nodiscard]] float factor(float term) const {
+    const float counted = optics_.counts_in_cutoff ? 1.0F : 0.0F;
+    return 1.0F - counted + counted * term;
   }
+  /// Of the channel that reflects most.
+  [[nodiscard]] float reflectance() const {
+    float most = reflectance_of(eta_of(node_.ray.channel));
+    if (parts_)
+      for (const Channel channel : kChannels) most = std::fmax(most, reflectance_of(eta_of(channel)));
+    return most;
+  }
+  /// The refracted ray, or those of the channels. Each is handed to refracted(ray), which may get null.
+  template <class Refracted>
+  void refract(Spawner& spawner, bool parted, const Refracted& done) const {
+    if (!optics_.refracts || parted != parts_) return;
+    if (!parts_) {
+      const float eta = eta_of(node_.ray.channel);
+      done(refract(spawner, Branch::refraction, eta, factor(1.0F - reflectance_of(eta))));
+      return;
+    }
+    for (const Channel channel : kChannels) {
+      const float eta = eta_of(channel);
+      done(refract(spawner, refracted(channel), eta, factor(1.0F - reflectance_of(eta))));
+    }
+  }
+
+ private:
+  [[nodiscard]] float eta_of(Channel channel) const {
+    const float ior = channel_ior(optics_, channel);
+    return node_.point.inside && optics_.bent ? 1.0F / ior : ior;
+  }
+  [[nodiscard]] float reflectance_of(float eta) const {
+    return optics_.refracts ? dielectric_reflectance(std::fmin(std::fmax(cosine_, flat_cosine_), 1.0F), eta) : 1.0F;
+  }
+  SpawnedRay* refract(Spawner& spawner, Branch branch, float eta, float passed) const {
+    if (!optics_.bent) return spawner.add_straight(branch, passed);
+    const bool is_flat = flat_cosine_ > cosine_ && sin2_behind(std::fmin(cosine_, 1.0F), eta) >= 1.0F;
+    const float c = std::fmin(is_flat ? flat_cosine_ : cosine_, 1.0F);
+    const float sin2 = sin2_behind(c, eta);
+    if (sin2 >= 1.0F) return nullptr;
+    const Normal& towards = is_flat ? node_.point.geometric : normal_;
+    const Direction bent = node_.ray.direction * (1.0F / eta) + towards * (c / eta - std::sqrt(1.0F - sin2));
+    // A bent shading normal may send the ray back to its own side: then it goes straight on.
+    if (bent.dot(node_.point.geometric) < 0) return spawner.add(branch, unit(bent), -1.0F, passed);
+    return spawner.add_straight(branch, passed);
+  }
+
+  const RayNode& node_;
+  const SurfaceOptics& optics_;
+  Normal normal_;
+  float cosine_, flat_cosine_;
+  bool parts_;
+};
+
+Normal coat_normal(const RayNode& node, const RayObject& object) {
+  return normal_of_slot(node, object, Slot::clearcoat_normal, object.material->clearcoat_normal_scale);
+}
+
+Spawned spawn_whitted(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
+  const SurfaceOptics& optics = object.optics;
+  Spawner spawner(node, object, node.ray.generation < rule.max_depth);
+  if (!optics.spawns()) return spawner.result();
+  const Direction d = node.ray.direction;
+  const Interface interface(node, object);
+  if (optics.reflects)
+    spawner.add(Branch::reflection, mirrored(d, interface.normal(), node.point.geometric), 1.0F,
+                interface.factor(interface.reflectance()));
   if (optics.coat_reflects && !node.point.inside) {
-    const Normal coat = normal_of_slot(node, object, Slot::clearcoat_normal, material.clearcoat_normal_scale);
+    const Normal coat = coat_normal(node, object);
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
                 coat_term(std::fmin(std::fmax(-d.dot(coat), kLeastCosine), 1.0F)));
   }
-  const auto refract = [&](Branch branch, float eta, float passed) {
-    if (!optics.bent) return spawner.add_straight(branch, passed);
-    const bool is_flat = flat_cosine > cosine && sin2_behind(std::fmin(cosine, 1.0F), eta) >= 1.0F;
-    const float c = std::fmin(is_flat ? flat_cosine : cosine, 1.0F);
-    const float sin2 = sin2_behind(c, eta);
-    if (sin2 >= 1.0F) return;
-    const Normal& towards = is_flat ? node.point.geometric : n;
-    const Direction bent = d * (1.0F / eta) + towards * (c / eta - std::sqrt(1.0F - sin2));
-    // A bent shading normal may send the ray back to its own side: then it goes straight on.
-    const bool goes_through = bent.dot(node.point.geometric) < 0;
-    if (goes_through)
-      spawner.add(branch, unit(bent), -1.0F, passed);
-    else
-      spawner.add_straight(branch, passed);
-  };
-  if (optics.refracts && !parts) refract(Branch::refraction, own_eta, factor(1.0F - reflectance));
+  interface.refract(spawner, false, [](SpawnedRay*) {});
   if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
-  if (optics.refracts && parts)
-    for (const Channel channel : kChannels) {
-      const float eta = eta_of(channel);
-      refract(refracted(channel), eta, factor(1.0F - reflectance_of(eta)));
-    }
+  interface.refract(spawner, true, [](SpawnedRay*) {});
   return spawner.result();
+}
+
+Branch branch_of(Lobe lobe) {
+  return lobe == Lobe::diffuse ? Branch::diffuse : lobe == Lobe::coat ? Branch::coat : Branch::reflection;
+}
+
+/// The ray of a lobe that has been chosen, from a hit that scatters.
+void add_lobe_ray(Spawner& spawner, const RayNode& node, const VertexLobes& lobes, const SpawnRule& rule,
+                  float fresnel) {
+  const PathState& from = node.ray.path;
+  const auto sample = sample_lobe(lobes, node.point.geometric, sample_point(from.key, from.history, Purpose::lobe));
+  if (!sample) return;
+  const bool is_diffuse = sample->lobe == Lobe::diffuse;
+  // Behind the last vertex, too, a ray gathers what shines where it ends.
+  spawner.set_may_spawn(true);
+  SpawnedRay* ray = spawner.add(branch_of(sample->lobe), sample->way, 1.0F, fresnel);
+  if (ray == nullptr) return;
+  PathState& path = ray->path;
+  path.from = node.object;
+  path.density = sample->density;
+  path.is_eye = false;
+  path.is_shut = false;
+  path.is_wide = lobes.is_wide(sample->lobe);
+  const AlphaBucket bucket = sample->lobe == Lobe::coat ? lobes.coat_bucket : lobes.specular_bucket;
+  path.alpha_floor =
+      std::fmax(from.alpha_floor, is_diffuse ? kAlphaFloorBehindDiffuse : alpha_floor_behind(bucket));
+  path.glossy = static_cast<std::uint8_t>(from.glossy + (is_diffuse ? 0 : 1));
+  path.gathers = is_diffuse || path.glossy > rule.glossy_depth || node.ray.generation >= rule.max_depth;
+}
+
+/// A proportion of blinn-phong: a mirror.
+void add_mirror_ray(Spawner& spawner, const RayNode& node, const Normal& normal) {
+  SpawnedRay* ray =
+      spawner.add(Branch::reflection, mirrored(node.ray.direction, normal, node.point.geometric), 1.0F, 1.0F);
+  if (ray == nullptr) return;
+  ray->path.from = node.object;
+  ray->path.density = 0;
+  ray->path.is_eye = ray->path.is_shut = ray->path.is_wide = false;
+}
+
+/// A ray through the surface: where it is bent, no sample of a light can stand for its direction.
+void note_refraction(SpawnedRay* ray) {
+  if (ray == nullptr || ray->goes_on()) return;
+  PathState& path = ray->path;
+  path.is_shut = path.is_shut || path.is_wide;
+  path.is_wide = path.is_eye = false;
+  path.density = 0;
+}
+
+/// One lobe is followed, and, beside it, what goes through the surface.
+Spawned spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
+  const SurfaceOptics& optics = object.optics;
+  const bool gathers = node.ray.path.gathers;
+  // What stands behind a thin surface is gathered, too.
+  constexpr std::uint32_t kMostStraight = 16;
+  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers ? kMostStraight : 0));
+  const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
+  if (gathers) {
+    if (optics.refracts && !optics.bent)
+      Interface(node, object).refract(spawner, false, [](SpawnedRay*) {});
+    if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
+    return spawner.result();
+  }
+  const Interface interface(node, object);
+  if (is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
+  interface.refract(spawner, false, note_refraction);
+  if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
+  interface.refract(spawner, true, note_refraction);
+  const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
+  if (!lobes.any()) return spawner.result();
+  add_lobe_ray(spawner, node, lobes, rule, optics.refracts ? interface.factor(interface.reflectance()) : 1.0F);
+  spawner.result().lobes = lobes;
+  return spawner.result();
+}
+
+}  // namespace
+
+Spawned spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
+  return rule.integrator == Integrator::path ? spawn_path(node, object, rule) : spawn_whitted(node, object, rule);
 }
 
 }  // namespace relook

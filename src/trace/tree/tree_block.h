@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "trace/surface.h"
+#include "trace/tree/lobes.h"
 #include "trace/tree/path_words.h"
 #include "trace/tree/spawned_ray.h"
 
@@ -22,7 +23,8 @@ struct RayNode {
       : parent(above), sample(of_sample), ray(way) {}
 
   std::uint32_t parent;
-  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode, kNoNode};
+  std::array<std::uint32_t, kBranches> child{kNoNode, kNoNode, kNoNode, kNoNode,
+                                             kNoNode, kNoNode, kNoNode, kNoNode};
   std::uint32_t sample;  // within the tile
   ObjectId object;       // none: miss
   Hit hit;
@@ -33,6 +35,7 @@ struct RayNode {
   float footprint = 0;                                // metres: ray-cone width at the hit over the cosine of incidence
   SurfacePoint point;
   std::uint32_t first_light = 0;  // into TreeBlock::lights, one entry per light of the light order
+  std::uint32_t lobes = kNoNode;  // into TreeBlock::lobes; kNoNode: it has none
 };
 
 [[nodiscard]] inline BranchSet children_of(const RayNode& node) {
@@ -56,12 +59,14 @@ struct FilterNode {
   SurfacePoint point;
   float footprint = 0;
   float length_inside = 0;  // metres of the segment inside the volume that it leaves here, 0 otherwise
+  float cosine = 0;         // of the segment with the geometric normal
 };
 
 struct TreeBlock {
   std::vector<RayNode> nodes;
   std::vector<LightLink> lights;
   std::vector<FilterNode> filters;
+  std::vector<VertexLobes> lobes;            // of the path integrator
   std::vector<std::uint32_t> blocker_words;  // entries of blocked lights, as in paths
 
   /// The entry of a blocked light. Requires: shadows are counted.
@@ -69,13 +74,16 @@ struct TreeBlock {
 
   /// A state to go back to: what was appended since is dropped.
   struct Mark {
-    std::size_t nodes = 0, lights = 0, filters = 0, blocker_words = 0;
+    std::size_t nodes = 0, lights = 0, filters = 0, lobes = 0, blocker_words = 0;
   };
-  [[nodiscard]] Mark mark() const { return {nodes.size(), lights.size(), filters.size(), blocker_words.size()}; }
+  [[nodiscard]] Mark mark() const {
+    return {nodes.size(), lights.size(), filters.size(), lobes.size(), blocker_words.size()};
+  }
   void rewind(const Mark& mark) {
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(mark.nodes), nodes.end());
     lights.resize(mark.lights);
     filters.resize(mark.filters);
+    lobes.resize(mark.lobes);
     blocker_words.resize(mark.blocker_words);
   }
   void clear() { rewind({}); }

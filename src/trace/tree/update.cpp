@@ -342,7 +342,7 @@ class Updater {
     const bool respawns = (change_.flags(node.object) & RayChange::respawns) != 0;
     Spawned before;
     if (respawns)
-      before = spawn(parent, change_.before[change_.before_index[node.object.index()]], grower_.grow().max_depth);
+      before = spawn(parent, change_.before[change_.before_index[node.object.index()]], grower_.grow().rule());
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
       const bool is_stored = node.has_child(branch), is_now = now.branches.has(branch);

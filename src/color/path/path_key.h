@@ -1,0 +1,30 @@
+// What the programs of the path integrator depend on beside the values of a material: how the ray met the surface, its
+// branches, and which of its pieces is asked for.
+#pragma once
+#include <compare>
+#include <cstdint>
+
+#include "base/id.h"
+#include "trace/tree/branch.h"
+
+namespace relook {
+
+/// The pieces that a path is put together of. A program yields columns of three channels, in this order:
+///   surface  the weight of each branch of `children`, in the order of Branch; emission; ambient light; the colour of an
+///            unlit surface; coverage (in all three)
+///   light    what the surface makes of a sample of a light
+///   filter   the share of light that passes
+enum class PathPiece : std::uint8_t { surface, light, filter };
+
+/// Pieces with equal keys share a program and its parameters.
+struct PathKey {
+  PathPiece piece = PathPiece::surface;
+  MaterialId material;
+  bool inside = false, vertex_colors = false;
+  bool interface_only = false;  // the inner side of a volume
+  bool gathers = false;         // surface: what it scatters does not count
+  BranchSet children;           // surface
+  auto operator<=>(const PathKey&) const = default;
+};
+
+}  // namespace relook

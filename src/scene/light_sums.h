@@ -1,0 +1,25 @@
+// The sums that a frame of Integrator::path is made of: one for each light and four for light that has no rays of its
+// own. Written by rendering, weighted by the colours that stand here, added in this order.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace relook {
+
+/// One term of a frame: color times the sum of the unit light that reaches a pixel.
+struct LightSum {
+  enum class Kind : std::uint8_t { light, sky, ambient, background, unlit } kind = Kind::light;
+  LightId light;                        // kind light: this one
+  std::string name;                     // of a layer: no two are alike, fit for channels of OpenEXR
+  std::array<double, 3> color{1, 1, 1}; // linear RGB: colour times intensity; 1 of unlit
+};
+
+/// The sums of a scene, in their order: the lights of Scene::light_order with the sky right before the suns, then
+/// ambient, background and unlit, which are always there.
+[[nodiscard]] std::vector<LightSum> light_sums(const Scene& scene);
+
+}  // namespace relook

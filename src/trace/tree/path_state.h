@@ -1,0 +1,24 @@
+// What a ray of the path integrator carries beside its way: what its sample is known by, and what scattered it last.
+#pragma once
+#include <cstdint>
+
+#include "base/id.h"
+#include "light/point_set.h"
+
+namespace relook {
+
+/// All as it is at the eye, unless said otherwise. Under Integrator::whitted nothing reads it.
+struct PathState {
+  SampleKey key;
+  std::uint64_t history = 0;  // of the vertex that this ray leads to (child_history)
+  ObjectId from;              // the surface that scattered it last; none: it comes straight from the eye
+  float density = 0;          // per steradian, times the share of the lobe that sent it; 0: of no lobe, or bent since
+  float alpha_floor = 0;      // least alpha of reflecting lobes from here on
+  std::uint8_t glossy = 0;    // reflections so far
+  bool is_eye = true;         // nothing has turned it
+  bool gathers = false;       // where it ends, emission counts and nothing is scattered
+  bool is_shut = false;       // from a wide lobe, through volumes alone: lights with a size reach that lobe by segments
+  bool is_wide = false;       // of a wide lobe, as long as it runs straight
+};
+
+}  // namespace relook
