@@ -1,11 +1,13 @@
 // An image with what it was made from, as a cache keeps it and a replay goes on from it: the frame, the colour of every
-// sample, and the paths and ray trees behind them. Plain data.
+// sample or the sums of light of every pixel, and the paths and ray trees behind them. Plain data.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "base/math.h"
 #include "frame/frame.h"
+#include "frame/light_sums.h"
+#include "scene/integrator.h"
 #include "trace/tree/ray_path.h"
 #include "trace/tree/ray_tree.h"
 
@@ -16,6 +18,9 @@ struct ViewOptions {
   std::uint32_t samples = 1;      // per pixel, at fixed positions; 1..1024
   std::uint32_t max_depth = 6;    // generations of rays, primary rays are the first; 1..32
   std::uint32_t shadow_bits = 0;  // of the shadow counters in ray paths; 0..4
+  Integrator integrator = Integrator::whitted;
+  // Of paths alone, 0..32: bounces off diffuse surfaces (0: direct light only), and glossy ones.
+  std::uint32_t diffuse_depth = 0, glossy_depth = 4;
   bool operator==(const ViewOptions&) const = default;
 };
 
@@ -27,7 +32,8 @@ struct Image {
   Frame frame;
   PathTable paths;
   std::vector<TileTrees> trees;                  // [tile_count()]
-  std::vector<std::vector<Rgba>> sample_colors;  // [tile_count()][samples of the tile]
+  std::vector<std::vector<Rgba>> sample_colors;  // [tile_count()][samples of the tile]; of paths none
+  std::vector<PackedSums> light_sums;            // [tile_count()] of paths; otherwise none
 };
 
 }  // namespace relook

@@ -1,35 +1,43 @@
 #include "frame/sums/fixed.h"
 
-namespace relook {
+#include <cmath>
 
-Fixed fixed_bits::fixed_of_odd(float term) {
+namespace relook {
+namespace {
+
+Fixed with_sign(Uint128 magnitude, bool is_negative) { return {is_negative ? -magnitude : magnitude}; }
+
+}  // namespace
+
+Fixed fixed_bits::fixed_of_any(float term, std::uint64_t& clamped) {
+  const bool is_within = std::fabs(term) <= kLargestTerm;
+  if (!is_within) ++clamped;
   if (std::isnan(term)) return {};
   const auto bits = std::bit_cast<std::uint32_t>(term);
   const std::uint32_t exponent = bits >> 23 & 0xFFU;
-  if (exponent >= kLargest) return with_sign(Uint128{1} << (30 - kFixedStep), bits);
+  const bool is_negative = std::signbit(term);
+  if (!is_within) return with_sign(Uint128{1} << (30 - kFixedStep), is_negative);
+  if (exponent >= kFirstWhole) return with_sign(Uint128{mantissa(bits)} << (exponent - kFirstWhole), is_negative);
   const std::uint32_t dropped = kFirstWhole - exponent;
   constexpr std::uint32_t kMantissaBits = 24;
   if (dropped > kMantissaBits) return {};  // less than half a step; denormal numbers as well
-  const std::uint32_t mantissa = (bits & 0x7FFFFFU) | 0x800000U;
-  const std::uint32_t whole = mantissa >> dropped, rest = mantissa - (whole << dropped), half = 1U << (dropped - 1);
-  return with_sign(whole + (rest > half || (rest == half && (whole & 1U) != 0) ? 1U : 0U), bits);
+  const std::uint32_t whole = mantissa(bits) >> dropped, rest = mantissa(bits) - (whole << dropped);
+  const std::uint32_t half = 1U << (dropped - 1);
+  return with_sign(whole + (rest > half || (rest == half && (whole & 1U) != 0) ? 1U : 0U), is_negative);
 }
 
 double value_of(Fixed sum) {
   if (sum.bits == 0) return 0;
   const bool is_negative = sum.steps() < 0;
-  Uint128 magnitude = is_negative ? -sum.bits : sum.bits;
+  const Uint128 magnitude = is_negative ? -sum.bits : sum.bits;
   const int bits = fixed_bits::bit_width(magnitude);
-  constexpr int kMantissaBits = 53;
-  const int dropped = bits > kMantissaBits ? bits - kMantissaBits : 0;
-  if (dropped > 0) {
-    const Uint128 rest = magnitude & ((Uint128{1} << dropped) - 1), half = Uint128{1} << (dropped - 1);
-    magnitude >>= dropped;
-    if (rest > half || (rest == half && (magnitude & 1U) != 0)) ++magnitude;
-  }
-  // A power of two between 2^-80 and 2^-5: the product is exact.
-  const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + kFixedStep + dropped) << 52);
-  const double value = static_cast<double>(static_cast<std::uint64_t>(magnitude)) * scale;
+  // The highest 62 bits, and one that says whether there are others below: as far as the nearest double can depend on.
+  const Uint128 normal = magnitude << (128 - bits);
+  constexpr int kBelow = 66;
+  const bool has_more = (normal << (128 - kBelow)) != 0;
+  const auto top = static_cast<std::int64_t>(normal >> kBelow) | (has_more ? 1 : 0);
+  const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + kFixedStep + bits - (128 - kBelow)) << 52);
+  const double value = static_cast<double>(top) * scale;
   return is_negative ? -value : value;
 }
 

@@ -2,8 +2,8 @@
 // away again. Two's complement in 128 bits, a step is 2^-80. Terms are at most 2^30, so a sum of 2^17 of them holds;
 // beyond that it wraps, and still comes back.
 #pragma once
+#include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 
 namespace relook {
@@ -29,18 +29,26 @@ struct Fixed {
 inline constexpr int kFixedStep = -80;          // its power of two
 inline constexpr float kLargestTerm = 0x1p30F;  // of either sign
 
-/// Is a term beyond the largest one, or no number?
-[[nodiscard]] inline bool is_clamped(float term) { return !(std::fabs(term) <= kLargestTerm); }
-
 namespace fixed_bits {
 /// The exponent bits of the first floats that are multiples of the step, and of the largest term.
 inline constexpr std::uint32_t kFirstWhole = 127 + 23 + kFixedStep, kLargest = 127 + 30;
 static_assert(kFirstWhole == 70);
 
-[[nodiscard]] inline Fixed with_sign(Uint128 magnitude, std::uint32_t float_bits) {
-  const Uint128 sign = -Uint128{float_bits >> 31};  // all ones for a negative one
-  return {(magnitude ^ sign) - sign};
-}
+/// By what a mantissa is multiplied, by the sign and the exponent bits of a float: a power of two of either sign. 0 for
+/// those that go another way, which are rounded or large, and for zeros.
+inline constexpr std::array<std::int64_t, 512> kFactors = [] {
+  std::array<std::int64_t, 512> factors{};
+  for (std::uint32_t shift = 0; shift < 63; ++shift) {
+    factors[kFirstWhole + shift] = std::int64_t{1} << shift;
+    factors[256 + kFirstWhole + shift] = -(std::int64_t{1} << shift);
+  }
+  return factors;
+}();
+
+[[nodiscard]] inline std::uint32_t mantissa(std::uint32_t float_bits) { return (float_bits & 0x7FFFFFU) | 0x800000U; }
+
+/// Of any term; `clamped` counts on if it is.
+[[nodiscard]] Fixed fixed_of_any(float term, std::uint64_t& clamped);
 
 /// Bits up to the highest that is 1.
 [[nodiscard]] inline int bit_width(Uint128 bits) {
@@ -48,19 +56,20 @@ static_assert(kFirstWhole == 70);
   return high != 0 ? 64 + static_cast<int>(std::bit_width(high))
                    : static_cast<int>(std::bit_width(static_cast<std::uint64_t>(bits)));
 }
-
-/// Of terms below the first whole ones and of those from the largest on.
-[[nodiscard]] Fixed fixed_of_odd(float term);
 }  // namespace fixed_bits
 
 /// The term, clamped to the largest one of its sign and rounded to the nearest step, ties to even; 0 for a NaN.
-[[nodiscard]] inline Fixed fixed_of(float term) {
+/// `clamped` counts on if it was clamped or is no number.
+[[nodiscard]] inline Fixed fixed_of(float term, std::uint64_t& clamped) {
   const auto bits = std::bit_cast<std::uint32_t>(term);
-  const std::uint32_t exponent = bits >> 23 & 0xFFU;
-  if (exponent - fixed_bits::kFirstWhole >= fixed_bits::kLargest - fixed_bits::kFirstWhole)
-    return (bits << 1) == 0 ? Fixed() : fixed_bits::fixed_of_odd(term);
-  const std::uint32_t mantissa = (bits & 0x7FFFFFU) | 0x800000U;
-  return fixed_bits::with_sign(Uint128{mantissa} << (exponent - fixed_bits::kFirstWhole), bits);
+  const std::uint32_t head = bits >> 23;
+  const std::int64_t factor = fixed_bits::kFactors[head];
+  if (factor == 0 && (head & 0xFFU) != 0) return fixed_bits::fixed_of_any(term, clamped);
+  return {static_cast<Uint128>(Int128{fixed_bits::mantissa(bits)} * factor)};
+}
+[[nodiscard]] inline Fixed fixed_of(float term) {
+  std::uint64_t clamped = 0;
+  return fixed_of(term, clamped);
 }
 
 /// The nearest double, ties to even.

@@ -109,9 +109,12 @@ TileSums PackedSums::unpack() const {
     TileSums::Row& row = sums.rows_[i];
     row.clamped = shape.clamped;
     if (shape.width == 0) continue;
-    row.values.reserve(count_of(i));
+    row.values.resize(count_of(i));
     const std::byte* place = values_.data() + starts_[i];
-    for (std::size_t k = 0; k < count_of(i); ++k, place += shape.width) row.values.push_back(read(place, shape));
+    for (Fixed& value : row.values) {
+      value = read(place, shape);
+      place += shape.width;
+    }
   }
   return sums;
 }

@@ -13,10 +13,6 @@ bool is_all_zero(const std::vector<Fixed>& values) {
 
 }  // namespace
 
-std::uint64_t TileSums::clamped_channels(const Color& term) {
-  return std::uint64_t{is_clamped(term.x)} + std::uint64_t{is_clamped(term.y)} + std::uint64_t{is_clamped(term.z)};
-}
-
 bool TileSums::make_room(Row& row, std::size_t channels, const Color& term) const {
   if (term.x == 0 && term.y == 0 && term.z == 0) return false;
   row.values.resize(pixels_ * channels);
@@ -26,15 +22,15 @@ bool TileSums::make_room(Row& row, std::size_t channels, const Color& term) cons
 void TileSums::add_coverage(std::size_t pixel, float coverage) {
   Row& row = coverage_row();
   if (row.values.empty() && !make_room(row, 1, Color(coverage))) return;
-  row.values[pixel] += fixed_of(coverage);
-  row.clamped += is_clamped(coverage) ? 1U : 0U;
+  row.values[pixel] += fixed_of(coverage, row.clamped);
 }
 
 void TileSums::subtract_coverage(std::size_t pixel, float coverage) {
   Row& row = coverage_row();
   if (row.values.empty() && !make_room(row, 1, Color(coverage))) return;
-  row.values[pixel] -= fixed_of(coverage);
-  row.clamped -= is_clamped(coverage) ? 1U : 0U;
+  std::uint64_t clamped = 0;
+  row.values[pixel] -= fixed_of(coverage, clamped);
+  row.clamped -= clamped;
 }
 
 void TileSums::add(const TileSums& other) {

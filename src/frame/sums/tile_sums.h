@@ -31,22 +31,20 @@ class TileSums {
     Row& row = rows_[sum];
     if (row.values.empty() && !make_room(row, kChannels, term)) return;
     Fixed* const place = &row.values[pixel * kChannels];
-    place[0] += fixed_of(term.x);
-    place[1] += fixed_of(term.y);
-    place[2] += fixed_of(term.z);
-    if (is_any_clamped(term)) [[unlikely]]
-      row.clamped += clamped_channels(term);
+    place[0] += fixed_of(term.x, row.clamped);
+    place[1] += fixed_of(term.y, row.clamped);
+    place[2] += fixed_of(term.z, row.clamped);
   }
   /// Takes back what was added, here or in the sums that are subtracted from.
   void subtract(std::size_t sum, std::size_t pixel, const Color& term) {
     Row& row = rows_[sum];
     if (row.values.empty() && !make_room(row, kChannels, term)) return;
     Fixed* const place = &row.values[pixel * kChannels];
-    place[0] -= fixed_of(term.x);
-    place[1] -= fixed_of(term.y);
-    place[2] -= fixed_of(term.z);
-    if (is_any_clamped(term)) [[unlikely]]
-      row.clamped -= clamped_channels(term);
+    std::uint64_t clamped = 0;
+    place[0] -= fixed_of(term.x, clamped);
+    place[1] -= fixed_of(term.y, clamped);
+    place[2] -= fixed_of(term.z, clamped);
+    row.clamped -= clamped;
   }
   void add_coverage(std::size_t pixel, float coverage);
   void subtract_coverage(std::size_t pixel, float coverage);
@@ -81,10 +79,6 @@ class TileSums {
     std::uint64_t clamped = 0;
   };
 
-  [[nodiscard]] static bool is_any_clamped(const Color& term) {
-    return is_clamped(term.x) || is_clamped(term.y) || is_clamped(term.z);
-  }
-  [[nodiscard]] static std::uint64_t clamped_channels(const Color& term);
   /// False: a term of zero needs none.
   bool make_room(Row& row, std::size_t channels, const Color& term) const;
   [[nodiscard]] Row& coverage_row() { return rows_.back(); }
