@@ -65,7 +65,7 @@ std::vector<Case> cases() {
 }
 
 TEST(LightShape, DensityIntegratesToOne) {
-  const Frame any = frame_around({0, 0, 1});
+  const ShapeFrame any = shape_frame_around({0, 0, 1});
   for (const Case& it : cases()) {
     Mean mean;
     for (std::uint32_t i = 0; i < 200000; ++i) {
@@ -98,7 +98,7 @@ TEST(LightShape, SamplesAreWhereRaysCross) {
 
 TEST(LightShape, SamplesHaveTheirDensity) {
   // Of directions, the share that falls into a half space and a cone must be what the density says.
-  const Frame any = frame_around({0, 0, 1});
+  const ShapeFrame any = shape_frame_around({0, 0, 1});
   for (const Case& it : cases()) {
     const std::optional<LightPoint> middle = sample(it.shape, it.from, {0.4F, 0.35F});
     ASSERT_TRUE(middle);
