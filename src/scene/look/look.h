@@ -39,8 +39,10 @@ struct LookDocument {
 void fill_defaults(Section section, Json& value);
 
 /// --lights auto: adds lights and nodes `key`, `fill` and `rim`, which shine from outside, and a `lamp` at the camera
-/// if it stands in a closed room. Returns a sentence about the lamp, or "" if there is none.
-[[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera);
+/// if it stands in a closed room; under Integrator::path a grey environment where there is none. Returns a sentence about
+/// the lamp, or "" if there is none.
+[[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera,
+                                          Integrator integrator = Integrator::whitted);
 
 /// Resolves --camera NAME | auto | EYE:TARGET:FOV ("" takes the first camera) at a resolution in pixels. Throws
 /// InputError when the scene has no such camera or nothing to frame, UsageError for a wrong EYE:TARGET:FOV.

@@ -12,13 +12,14 @@ namespace relook {
 
 /// What is used, by index into glTF's arrays. Materials of variants count as used: one edit shows them.
 struct GltfUse {
-  std::vector<bool> nodes, cameras, lights, area_lights, meshes, skins, materials, textures, images, samplers;
+  std::vector<bool> nodes, cameras, lights, meshes, skins, materials, textures, images, samplers;
   std::vector<bool> skinned_meshes;  // of a node with a skin
   struct Primitive {
     std::array<bool, 2> uv{};  // TEXCOORD_n is read by a texture of its materials
     bool is_lit = false;       // by one of them
   };
   std::vector<std::vector<Primitive>> primitives;  // by mesh
+  std::vector<bool> area_lights;                   // of EXT_lights_area; `lights`: of KHR_lights_punctual
 
   [[nodiscard]] const std::vector<bool>& of(Section section) const;
   /// Whether a column of a primitive, or of its morph targets, counts for the picture; tangents can be derived.
