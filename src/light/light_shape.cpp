@@ -29,7 +29,7 @@ SphereCrossing cross_sphere(const Wide& from, double radius, const Wide& way) {
   const double left = radius * radius - nearest.dot(nearest);
   const double half_chord = std::sqrt(left > 0 ? left : 0.0);
   const double outside = from.dot(from) - radius * radius;
-  if (!(outside > 0)) return {true, along + half_chord};
+  if (!(outside > 0)) return {true, along < 0 ? -outside / (half_chord - along) : along + half_chord};
   return {left >= 0 && along > 0, along > 0 ? outside / (along + half_chord) : 0.0};
 }
 
