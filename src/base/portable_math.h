@@ -1,6 +1,7 @@
 // Elementary functions with the same bits on every machine: libm picks other code (with fused operations) on other
 // processors. Plain float arithmetic in a fixed order, so loops over them vectorise. Errors are a few 1e-7, relative
-// for exp2, absolute for log2 near 1 and the trigonometric functions.
+// for exp2, absolute for log2 near 1 and the trigonometric functions; of the functions of doubles a few 1e-16, relative
+// for small angles.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -97,6 +98,71 @@ namespace relook {
 [[nodiscard, gnu::always_inline]] inline float portable_asin_turns(float x) {
   const float clamped = x < -1.0F ? -1.0F : (x > 1.0F ? 1.0F : x);
   return portable_atan2_turns(clamped, std::sqrt((1.0F - clamped) * (1.0F + clamped)));
+}
+
+struct SinCos {
+  double sin, cos;
+};
+/// Of an angle in radians, of at most 1000.
+[[nodiscard]] inline SinCos portable_sin_cos(double radians) {
+  const double quarters = radians * (2 * std::numbers::inv_pi);
+  const auto whole = static_cast<std::int32_t>(quarters < 0 ? quarters - 0.5 : quarters + 0.5);
+  const double turned = static_cast<double>(whole);
+  const double a = (radians - turned * 1.57079632679489656) - turned * 6.12323399573676604e-17;  // [-pi/4, pi/4]
+  const double a2 = a * a;
+  // Taylor series up to a^15 and a^16.
+  double s = -1.0 / 1307674368000;
+  s = s * a2 + 1.0 / 6227020800;
+  s = s * a2 - 1.0 / 39916800;
+  s = s * a2 + 1.0 / 362880;
+  s = s * a2 - 1.0 / 5040;
+  s = s * a2 + 1.0 / 120;
+  s = s * a2 - 1.0 / 6;
+  s = a + a * a2 * s;
+  double c = 1.0 / 20922789888000;
+  c = c * a2 - 1.0 / 87178291200;
+  c = c * a2 + 1.0 / 479001600;
+  c = c * a2 - 1.0 / 3628800;
+  c = c * a2 + 1.0 / 40320;
+  c = c * a2 - 1.0 / 720;
+  c = c * a2 + 1.0 / 24;
+  c = c * a2 - 0.5;
+  c = 1 + a2 * c;
+  switch (static_cast<std::uint32_t>(whole) & 3U) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
+  }
+}
+
+/// atan(y / x) in the right quadrant, in radians: [-pi, pi]; 0 for (0, 0).
+[[nodiscard]] inline double portable_atan2(double y, double x) {
+  // atan(r) = atan(c) + atan((r - c) / (1 + r c)) with c = k / 4, so that the series converges quickly.
+  constexpr double kNodes[] = {0, 0.24497866312686415, 0.46364760900080612, 0.64350110879328439, 0.78539816339744831};
+  const double ax = std::fabs(x), ay = std::fabs(y);
+  const double large = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
+  const double ratio = large > 0 ? small / large : 0.0;  // [0, 1]
+  const std::int32_t node = ratio < 1 ? static_cast<std::int32_t>(4 * ratio + 0.5) : 4;
+  const double c = 0.25 * node;
+  const double z = (ratio - c) / (1 + ratio * c);  // |z| <= 1/8
+  const double z2 = z * z;
+  double p = 1.0 / 17;
+  p = p * z2 - 1.0 / 15;
+  p = p * z2 + 1.0 / 13;
+  p = p * z2 - 1.0 / 11;
+  p = p * z2 + 1.0 / 9;
+  p = p * z2 - 1.0 / 7;
+  p = p * z2 + 1.0 / 5;
+  p = p * z2 - 1.0 / 3;
+  double angle = kNodes[node] + (z + z * z2 * p);
+  angle = ay > ax ? 1.57079632679489662 - angle : angle;
+  angle = x < 0 ? 3.14159265358979324 - angle : angle;
+  return y < 0 ? -angle : angle;
 }
 
 }  // namespace relook

@@ -34,8 +34,8 @@ std::vector<MeshId> meshes_with(const Scene& scene, MaterialId material) {
 }
 
 /// The class of a change of a material on one mesh.
-ChangeClass class_of(const Material& before, const Material& after, const Mesh& mesh) {
-  return class_of(effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh)));
+ChangeClass class_of(const Material& before, const Material& after, const Mesh& mesh, Integrator integrator) {
+  return class_of(effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh), integrator));
 }
 
 /// Has a material the same optics whatever mesh shows it? They depend on a mesh through its smallest alpha alone, and
@@ -49,10 +49,10 @@ bool is_alike_on_all(const Material& material) {
 /// The strongest class over all meshes that show the material.
 ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
   const Material& after = scene.material(change.id);
-  if (is_alike_on_all(change.before) && is_alike_on_all(after)) return class_of(change.before, after, Mesh());
+  if (is_alike_on_all(change.before) && is_alike_on_all(after)) return class_of(change.before, after, Mesh(), scene.integrator);
   ChangeClass strongest = ChangeClass::color;
   for (MeshId mesh : meshes_with(scene, change.id))
-    strongest = std::max(strongest, class_of(change.before, after, scene.mesh(mesh)));
+    strongest = std::max(strongest, class_of(change.before, after, scene.mesh(mesh), scene.integrator));
   return strongest;
 }
 
@@ -103,21 +103,33 @@ void classify_object(const Scene& scene, const SceneDelta& delta, const SceneDel
   if (effect.moved) return findings.add(class_of(effect), name + describe_move(before, after));
   const Material& old_material = material_before(scene, delta, before.material);
   const Material& new_material = scene.material(after.material);
-  findings.add(class_of(old_material, new_material, scene.mesh(after.mesh)),
+  findings.add(class_of(old_material, new_material, scene.mesh(after.mesh), scene.integrator),
                name + ": material " + name_of(old_material) + " -> " + name_of(new_material));
+}
+
+std::string light_name(const Light& before, const Light& after) {
+  const std::string& light = after.light.empty() ? before.light : after.light;
+  if (after.kind == LightKind::suns) return "the suns of the environment";
+  if (after.kind == LightKind::emission) return "emission of material " + light;
+  return "light " + light + " (node " + after.node + ")";
+}
+
+/// What a report says of a light, after its name.
+std::string describe_move(const Light& before, const Light& after, const LightEffect& effect) {
+  if (effect.exists_otherwise) return after.alive ? " appears" : " disappears";
+  if (before.kind != after.kind) return ": another type";
+  const bool is_placed_otherwise = before.position != after.position || before.direction != after.direction;
+  if (is_placed_otherwise) return " is transformed";
+  return ": " + describe_light_change(before, after);
 }
 
 void classify_light(const Scene& scene, const SceneDelta::LightChange& change, Findings& findings) {
   const Light& before = change.before;
   const Light& after = scene.light(change.id);
-  const std::string name = "light " + (after.light.empty() ? before.light : after.light) + " (node " + after.node + ")";
   const LightEffect effect = effect_of(before, after);
-  const auto sentence = [&]() -> std::string {
-    if (effect.exists_otherwise) return after.alive ? " appears" : " disappears";
-    if (before.kind != after.kind) return ": another type";
-    return effect.moved ? " is transformed" : ": " + describe_light_change(before, after);
-  };
-  findings.add(class_of(effect), name + sentence());
+  // Of suns and emission, colours are told of the environment and of the material.
+  if (!traits_of(after.kind).in_document && class_of(effect) == ChangeClass::color) return;
+  findings.add(class_of(effect), light_name(before, after) + describe_move(before, after, effect));
 }
 
 }  // namespace

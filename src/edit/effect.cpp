@@ -1,5 +1,7 @@
 #include "edit/effect.h"
 
+#include "edit/lobe_effect.h"
+
 namespace relook {
 
 ChangeClass class_of(const ObjectEffect& effect) {
@@ -8,14 +10,15 @@ ChangeClass class_of(const ObjectEffect& effect) {
 }
 
 ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_before, const Material& after,
-                       const SurfaceOptics& optics_after, std::span<const MaterialRow> rows) {
+                       const SurfaceOptics& optics_after, Integrator integrator, std::span<const MaterialRow> rows) {
   const auto differ = [&](MaterialRow::Trait trait) { return differs(trait, before, after, rows); };
   ObjectEffect effect;
   effect.moved = optics_before.cut_out != optics_after.cut_out || optics_before.culls_back != optics_after.culls_back ||
                  (optics_after.cut_out && differ(MaterialRow::cuts));
   effect.shadows = effect.moved || optics_before.passes_light != optics_after.passes_light;
   effect.respawns = optics_before != optics_after || (optics_after.spawns() && differ(MaterialRow::bends)) ||
-                    (optics_after.coat_reflects && differ(MaterialRow::bends_coat));
+                    (optics_after.coat_reflects && differ(MaterialRow::bends_coat)) ||
+                    (integrator == Integrator::path && turns_lobes(before, after, rows));
   return effect;
 }
 
@@ -30,9 +33,13 @@ LightEffect effect_of(const Light& before, const Light& after) {
   LightEffect effect;
   effect.exists_otherwise = before.alive != after.alive;
   effect.moved = before.kind != after.kind || before.position != after.position || before.direction != after.direction;
-  effect.recolored = before.color != after.color || before.intensity != after.intensity ||
-                     before.range != after.range || before.inner_cone != after.inner_cone ||
-                     before.outer_cone != after.outer_cone;
+  effect.moved = effect.moved || before.radius != after.radius || before.angle != after.angle ||
+                 before.right != after.right || before.up != after.up || before.visible != after.visible ||
+                 before.rate != after.rate || before.emission != after.emission || before.image != after.image ||
+                 before.rotation != after.rotation;
+  effect.reshaded = before.range != after.range || before.inner_cone != after.inner_cone ||
+                    before.outer_cone != after.outer_cone || before.excluded != after.excluded;
+  effect.recolored = before.color != after.color || before.intensity != after.intensity || effect.reshaded;
   return effect;
 }
 

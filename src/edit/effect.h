@@ -18,17 +18,19 @@ struct ObjectEffect {
 [[nodiscard]] ChangeClass class_of(const ObjectEffect& effect);
 
 /// The effect of another material, or of other values of its material, on an object whose mesh makes these optics of
-/// them.
+/// them. Under Integrator::path `respawns` is an upper bound (turns_lobes()).
 [[nodiscard]] ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_before, const Material& after,
                                      const SurfaceOptics& optics_after,
+                                     Integrator integrator = Integrator::whitted,
                                      std::span<const MaterialRow> rows = material_rows());
 /// The effect of all else that has changed about an object: everything but its material.
 [[nodiscard]] ObjectEffect effect_of(const Object& before, const Object& after);
 
 struct LightEffect {
   bool exists_otherwise = false;  // it appears or disappears
-  bool moved = false;             // its light comes from elsewhere
+  bool moved = false;             // its light comes from elsewhere, or by other samples
   bool recolored = false;         // a colour parameter is another one
+  bool reshaded = false;          // and not only colour and intensity, which multiply the whole of its light
 };
 [[nodiscard]] LightEffect effect_of(const Light& before, const Light& after);
 [[nodiscard]] ChangeClass class_of(const LightEffect& effect);

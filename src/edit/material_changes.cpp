@@ -45,6 +45,22 @@ std::string describe_slot(const TextureSlot& before, const TextureSlot& after) {
   return "transformed";
 }
 
+using Image = std::shared_ptr<const TexturePyramid>;
+void describe_image(const std::string& what, const Image& before, const Image& after, Sentence& sentence) {
+  if (before == after) return;
+  sentence.add(what + (before == nullptr ? " added" : after == nullptr ? " removed" : " replaced"));
+}
+
+void describe_background(const std::optional<Background>& before, const std::optional<Background>& after,
+                         Sentence& sentence) {
+  if (before.has_value() != after.has_value()) return sentence.add(after ? "background added" : "background removed");
+  if (!before) return;
+  sentence.compare("background colour", before->color, after->color);
+  sentence.compare("background intensity", before->intensity, after->intensity);
+  sentence.compare("background rotation", before->rotation, after->rotation);
+  describe_image("background image", before->image, after->image, sentence);
+}
+
 void describe(const MaterialRow& row, const Material& before, const Material& after, Sentence& sentence) {
   std::visit(
       [&](const auto member) {
@@ -84,6 +100,19 @@ std::string describe_light_change(const Light& before, const Light& after) {
   s.compare("range", before.range, after.range);
   s.compare("inner cone", before.inner_cone, after.inner_cone);
   s.compare("outer cone", before.outer_cone, after.outer_cone);
+  s.compare("radius", before.radius, after.radius);
+  s.compare("angle", before.angle, after.angle);
+  if (const float was = before.up.length(), is = after.up.length(); was != is)
+    s.compare("height", 2 * was, 2 * is);
+  if (const float was = before.right.length(), is = after.right.length(); was != is)
+    s.compare("width", 2 * was, 2 * is);
+  s.compare("visible", before.visible, after.visible);
+  s.compare("rate", before.rate, after.rate);
+  s.compare("rotation", before.rotation, after.rotation);
+  if (before.excluded != after.excluded) s.add("lights other objects");
+  if (before.emission != after.emission) s.add("texture " + describe_slot(before.emission, after.emission));
+  describe_image("image", before.image, after.image, s);
+  if (s.text().empty()) s.add("turned about its axis");
   return s.text();
 }
 
@@ -92,8 +121,8 @@ std::string describe_environment_change(const Environment& before, const Environ
   s.compare("colour", before.color, after.color);
   s.compare("intensity", before.intensity, after.intensity);
   s.compare("rotation", before.rotation, after.rotation);
-  if (before.image != after.image)
-    s.add(before.image == nullptr ? "image added" : after.image == nullptr ? "image removed" : "image replaced");
+  describe_image("image", before.image, after.image, s);
+  describe_background(before.background, after.background, s);
   return s.text();
 }
 

@@ -66,6 +66,26 @@ void Transaction::rename_node(const std::string& from, const std::string& to) {
   const std::string parent = current_parent(from);
   if (parent != to) replace_mention(parent, from, to);
   replace_joint(from, to);
+  replace_excluded(from, to);
+}
+
+/// Gives a node its new name where lights exclude it. One that is removed keeps its mention, which the compiler
+/// refuses.
+void Transaction::replace_excluded(const std::string& node, const std::string& by) {
+  const Json* nodes = find({"nodes", ""});
+  if (nodes == nullptr || !nodes->is_object()) return;
+  const Json::json_pointer place("/extras/relook/excludes");
+  std::vector<std::string> mentioning;
+  for (const auto& other : nodes->items()) {
+    if (!other.value().is_object() || !other.value().contains("extras") || !other.value().contains(place)) continue;
+    const Json& excludes = other.value()[place];
+    if (excludes.is_array() && std::ranges::find(excludes, Json(node)) != excludes.end())
+      mentioning.push_back(other.key());
+  }
+  for (const std::string& name : mentioning) {
+    touch(TouchedEntity{"nodes", name});
+    std::ranges::replace((*find({"nodes", name}))[place], Json(node), Json(by));
+  }
 }
 
 /// Gives a joint its new name in all skins. A skin goes with the last of its joints (by ""); one that keeps others

@@ -112,8 +112,7 @@ bool Transaction::has_changes() {
 Tokens Transaction::resolve(const std::string& pointer, const PatchPlace& place) const {
   if (pointer.empty()) return {};
   Tokens tokens = split_pointer(pointer, place.file, place.where);
-  const Tokens lights{"extensions", "KHR_lights_punctual", "lights"};
-  if (is_prefix(lights, tokens)) tokens.erase(tokens.begin(), tokens.begin() + 2);
+  resolve_light_place(state_.document(), tokens);
   if (tokens[0] == "cameras") throw InputError(place.file, place.where, "cameras are fixed and cannot be edited");
   const std::optional<Section> section = section_of(tokens[0]);
   const LookDocument& look = state_.document();

@@ -70,6 +70,7 @@ class Transaction {
   void rename_node(const std::string& from, const std::string& to);
   void copy_descendants(const std::string& copy, const PatchPlace& place);
   [[nodiscard]] std::string current_parent(const std::string& node);
+  void replace_excluded(const std::string& node, const std::string& by);
   void replace_joint(const std::string& joint, const std::string& by);
   void replace_mention(const std::string& parent, const std::string& child, const std::string& by);
 

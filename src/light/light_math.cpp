@@ -19,7 +19,7 @@ PlanePoint triangle_point(const Uv& u) {
   return b > a ? PlanePoint{a / 2, b - a / 2} : PlanePoint{a - b / 2, b / 2};
 }
 
-Wide cone_direction(const Frame& frame, double versine, const Uv& u) {
+Wide cone_direction(const ShapeFrame& frame, double versine, const Uv& u) {
   const PlanePoint at = disc_point(u);
   const double v = versine * (at.x * at.x + at.y * at.y);  // uniform in [0, versine)
   const double sine = std::sqrt(versine * (2 - v));        // over the disc's radius

@@ -25,11 +25,11 @@ using Wide = Imath::V3d;
 }
 
 /// Right-handed, of unit vectors.
-struct Frame {
+struct ShapeFrame {
   Wide x, y, z;
 };
 /// Around a unit vector (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
-[[nodiscard]] inline Frame frame_around(const Wide& z) {
+[[nodiscard]] inline ShapeFrame shape_frame_around(const Wide& z) {
   const double sign = z.z < 0 ? -1.0 : 1.0;
   const double a = -1 / (sign + z.z), b = z.x * z.y * a;
   return {{1 + sign * z.x * z.x * a, sign * b, -sign * z.x}, {b, sign + z.y * z.y * a, -z.y}, z};
@@ -50,7 +50,7 @@ struct PlanePoint {
   return static_cast<float>(2 * square(std::sin(0.5 * double{angle})));
 }
 /// Uniform in the cone around frame.z; a versine of 2 is all directions.
-[[nodiscard]] Wide cone_direction(const Frame& frame, double versine, const Uv& u);
+[[nodiscard]] Wide cone_direction(const ShapeFrame& frame, double versine, const Uv& u);
 /// Per steradian.
 [[nodiscard]] inline double cone_density(double versine) { return 0.5 * std::numbers::inv_pi / versine; }
 

@@ -47,7 +47,7 @@ std::optional<LightPoint> SphereShape::sample(const Point& from, const Uv& u) co
   const Wide to_center = wide(center_) - wide(from);
   const double versine = sphere_versine(to_center, radius_);
   const Wide axis = versine < 2 ? divided(to_center, length_of(to_center)) : Wide(0, 0, 1);
-  const Direction way = narrow(cone_direction(frame_around(axis), versine, u));
+  const Direction way = narrow(cone_direction(shape_frame_around(axis), versine, u));
   const SphereCrossing crossing = cross_sphere(-to_center, radius_, wide(way));
   return if_any({way, static_cast<float>(crossing.distance), density(from, way)});
 }
@@ -169,7 +169,7 @@ std::optional<float> TriangleShape::cross(const Point& origin, const Direction& 
 }
 
 SkyDisc::SkyDisc(const Direction& axis, float versine)
-    : frame_(frame_around(divided(wide(axis), length_of(wide(axis))))), versine_(versine) {}
+    : frame_(shape_frame_around(divided(wide(axis), length_of(wide(axis))))), versine_(versine) {}
 
 std::optional<LightPoint> SkyDisc::sample(const Point& from, const Uv& u) const {
   const Direction way = narrow(cone_direction(frame_, versine_, u));

@@ -130,7 +130,7 @@ class SkyDisc {
   [[nodiscard]] std::optional<float> cross(const Point& origin, const Direction& way) const;
 
  private:
-  Frame frame_;
+  ShapeFrame frame_;
   float versine_;
 };
 

@@ -5,22 +5,6 @@
 namespace relook {
 namespace {
 
-/// Smallest and largest linear value that a slot multiplies its factor by; (1, 1) for an empty slot.
-std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot) {
-  switch (slot.kind) {
-    case TextureKind::image:
-      return {slot.pyramid->smallest, slot.pyramid->largest};
-    case TextureKind::procedural: {
-      const Color a = slot.procedural.color1, b = slot.procedural.color2;
-      return {Rgba(std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z), 1),
-              Rgba(std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z), 1)};
-    }
-    case TextureKind::none:
-      break;
-  }
-  return {Rgba(1, 1, 1, 1), Rgba(1, 1, 1, 1)};
-}
-
 bool lets_light_past(const Material& m, const Mesh& mesh) {
   if (m.alpha_mode != AlphaMode::blend) return false;
   return m.base_color.a * texture_range(m.slot(Slot::base_color)).first.a * mesh.min_alpha < 1;
@@ -58,6 +42,21 @@ SurfaceOptics blinn_phong_optics(const Material& m) {
 }
 
 }  // namespace
+
+std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot) {
+  switch (slot.kind) {
+    case TextureKind::image:
+      return {slot.pyramid->smallest, slot.pyramid->largest};
+    case TextureKind::procedural: {
+      const Color a = slot.procedural.color1, b = slot.procedural.color2;
+      return {Rgba(std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z), 1),
+              Rgba(std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z), 1)};
+    }
+    case TextureKind::none:
+      break;
+  }
+  return {Rgba(1, 1, 1, 1), Rgba(1, 1, 1, 1)};
+}
 
 SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
   SurfaceOptics optics;

@@ -3,6 +3,8 @@
 // from values: an edit is optical exactly when this, or what bends the spawned rays, changes. Called for every object
 // that rays meet (trace/ray_scene.cpp), and for materials that an edit changes (edit/, replay/).
 #pragma once
+#include <utility>
+
 #include "scene/material.h"
 #include "scene/mesh.h"
 
@@ -30,5 +32,8 @@ struct SurfaceOptics {
 };
 
 [[nodiscard]] SurfaceOptics surface_optics(const Material& material, const Mesh& mesh);
+
+/// Smallest and largest linear value that a slot multiplies its factor by; (1, 1) for an empty slot.
+[[nodiscard]] std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot);
 
 }  // namespace relook

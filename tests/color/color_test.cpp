@@ -26,7 +26,23 @@ TEST(PortableMath, AgreesWithTheStandardLibrary) {
   }
 }
 
+TEST(PortableMath, DoublesAgreeWithTheStandardLibrary) {
+  for (int i = -2000; i <= 2000; ++i) {
+    const double x = i * 0.0371;
+    EXPECT_NEAR(portable_sin_cos(x).sin, std::sin(x), 1e-15);
+    EXPECT_NEAR(portable_sin_cos(x).cos, std::cos(x), 1e-15);
+    const double small = std::exp(x);  // 5e-33 to 2e32
+    EXPECT_NEAR(portable_atan2(small, 1), std::atan(small), 4e-16 * std::atan(small));
+    const double below_one = small / (1 + small);
+    EXPECT_NEAR(portable_sin_cos(below_one).sin, std::sin(below_one), 4e-16 * below_one);
+    for (int j = -20; j <= 20; ++j) EXPECT_NEAR(portable_atan2(j * 0.7, x), std::atan2(j * 0.7, x), 1e-15);
+  }
+}
+
 TEST(PortableMath, EdgesOfTheDomain) {
+  EXPECT_EQ(portable_atan2(0, 0), 0);
+  EXPECT_EQ(portable_sin_cos(0).sin, 0);
+  EXPECT_EQ(portable_sin_cos(0).cos, 1);
   EXPECT_EQ(portable_exp2(-1000), 0);
   EXPECT_TRUE(std::isfinite(portable_exp2(1000)));
   EXPECT_EQ(portable_log2(0), -127);

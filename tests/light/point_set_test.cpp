@@ -141,7 +141,8 @@ TEST(PointSet, HasTheseBits) {
   };
   using Bits = std::pair<std::uint32_t, std::uint32_t>;
   EXPECT_EQ(point({0, 0}, 0, Purpose::pixel, 0), Bits(0x9E3F06, 0xBE9740));
-  EXPECT_EQ(point({pixel_key(3, 5), 17}, child_history(0, 2), Purpose::light, name_hash("key")), Bits(0xD7CE2, 0x9C0773));
+  EXPECT_EQ(point({pixel_key(3, 5), 17}, child_history(0, 2), Purpose::light, name_hash("key")),
+            Bits(0xD7CE2, 0x9C0773));
   EXPECT_EQ(bits(sample_number({1, 4095}, 9, Purpose::coverage)), 0xE9AC5CU);
   EXPECT_EQ(pixel_key(3, 5), 0xBC312E6FU);
   EXPECT_EQ(name_hash("key"), 0xBBEA0D63A05165E3U);

@@ -83,6 +83,16 @@ std::string slot_text(const TextureSlot& slot) {
          bits(slot.rotation);
 }
 
+/// What Integrator::path reads of a light, objects by their keys.
+std::string path_text(const Scene& scene, const Light& light) {
+  std::set<std::uint64_t> excluded;
+  for (const ObjectId id : light.excluded) excluded.insert(scene.object(id).key);
+  std::string text = bits(light.radius) + bits(light.angle) + bits(light.right) + bits(light.up) + bits(light.rate) +
+                     (light.visible ? "visible " : "") + slot_text(light.emission) + bits(light.rotation);
+  for (const std::uint64_t key : excluded) text += std::to_string(key) + " ";
+  return text;
+}
+
 std::string material_text(const Material& m) {
   std::string text = m.name + " " + std::to_string(static_cast<int>(m.model)) +
                      std::to_string(static_cast<int>(m.alpha_mode)) + (m.double_sided ? "d " : "s ");
@@ -154,11 +164,11 @@ std::shared_ptr<PyramidStore> small_pyramids() {
   return pyramids;
 }
 
-SceneState small_state() {
+SceneState small_state(Integrator integrator) {
   LookDocument document = make_look_document(small_gltf());
   Camera camera = choose_camera(document, "Lens", 64, 48);
   camera.eye = WidePoint(0, 0, 0);  // so that places are those of the world
-  return SceneState(std::move(document), std::move(camera), small_pyramids());
+  return SceneState(std::move(document), std::move(camera), small_pyramids(), integrator);
 }
 
 Edit edit_of(const std::string& json_array) {
@@ -206,11 +216,12 @@ std::string scene_text(const Scene& scene) {
     const Light& light = scene.light(id);
     text += "light " + light.node + " " + light.light + " " + std::to_string(static_cast<int>(light.kind)) + " " +
             bits(light.position) + bits(light.direction) + bits(light.color) + bits(light.intensity) +
-            bits(light.range) + bits(light.inner_cone) + bits(light.outer_cone) + "\n";
+            bits(light.range) + bits(light.inner_cone) + bits(light.outer_cone) + path_text(scene, light) + "\n";
   }
   const Environment& e = scene.environment;
   return text + "ambient " + bits(scene.ambient) + " environment " + bits(e.color) + bits(e.intensity) +
-         bits(e.rotation) + std::to_string(reinterpret_cast<std::uintptr_t>(e.image.get()));
+         bits(e.rotation) + std::to_string(reinterpret_cast<std::uintptr_t>(e.image.get())) +
+         (e.background ? "background " + bits(e.background->color) + bits(e.background->intensity) : "");
 }
 
 }  // namespace relook

@@ -19,7 +19,7 @@ namespace relook {
 [[nodiscard]] std::shared_ptr<PyramidStore> small_pyramids();
 
 /// The scene compiled, seen by camera Eye.
-[[nodiscard]] SceneState small_state();
+[[nodiscard]] SceneState small_state(Integrator integrator = Integrator::whitted);
 
 /// One operation as JSON text, as in a journal; `where` is "/edit/<index>".
 [[nodiscard]] Edit edit_of(const std::string& json_array);

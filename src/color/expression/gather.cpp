@@ -61,6 +61,23 @@ void gather(Payload payload, const Gathering& from, const BlockColors& colors, f
         const ShadowState state = from.block.lights[node.first_light + which].state;
         return state == ShadowState::open || state == ShadowState::filtered ? 1.0F : 0.0F;
       });
+    case Input::child_direction:
+      return from_nodes(
+          from, out, [&](const RayNode& node) { return from.block.nodes[node.child[which]].ray.direction[axis]; });
+    case Input::child_share:
+      return from_nodes(from, out, [&](const RayNode& node) {
+        return 1.0F / from.block.nodes[node.child[which]].ray.path.density;
+      });
+    case Input::alpha_floor:
+      return from_nodes(from, out, [&](const RayNode& node) { return node.ray.path.alpha_floor; });
+    case Input::cosine:
+      for (std::size_t lane = 0; lane < from.indices.size(); ++lane)
+        out[lane] = from.block.filters[from.indices[lane]].cosine;
+      return;
+    case Input::light_direction:
+    case Input::light_weight:
+    case Input::light_radiance:
+      return;  // of light terms (color/path/path_programs.h)
   }
 }
 

@@ -10,8 +10,8 @@
 namespace relook {
 
 /// The pieces that a path is put together of. A program yields columns of three channels, in this order:
-///   surface  the weight of each branch of `children`, in the order of Branch; emission; ambient light; the colour of an
-///            unlit surface; coverage (in all three)
+///   surface  the weight of each branch of `children`, in the order of Branch; what of its emission gets out; ambient
+///            light; the colour of an unlit surface; coverage (in all three)
 ///   light    what the surface makes of a sample of a light
 ///   filter   the share of light that passes
 enum class PathPiece : std::uint8_t { surface, light, filter };

@@ -10,6 +10,7 @@
 #include "physics/ggx.h"
 #include "physics/lambert.h"
 #include "physics/lobe_angles.h"
+#include "physics/lobe_buckets.h"
 #include "physics/phong.h"
 #include "physics/sheen.h"
 
@@ -21,8 +22,8 @@ struct LobeValues {
   Triple diffuse, specular, coat;
 };
 
-/// The roughness of a reflecting lobe behind other bounces (LIGHT.md's floor of alpha).
-Scalar floored_roughness(SurfaceTerms& t, Scalar roughness) { return max(roughness, sqrt(t.input(Input::alpha_floor))); }
+/// The roughness of a reflecting lobe behind other bounces.
+Scalar floored_roughness(SurfaceTerms& t, Scalar roughness) { return floored(roughness, t.input(Input::alpha_floor)); }
 
 /// Metallic-roughness in its layers, from below: base, sheen, emission, coat.
 class LayeredSurface {
@@ -52,7 +53,7 @@ class LayeredSurface {
     const LobeAngles<Triple> at = lobe_angles(normal_, view_, direction);
     const Scalar weight = weight_at(at.vh);
     const Triple mirror = reflectance_.mixed(reflectance_.dielectric(weight, at.vh), weight, at.vh);
-    LobeValues values{t_.grey(0), mirror * (specular_.value(at, direction, view_, nv_) * at.nl), t_.grey(0)};
+    LobeValues values{t_.grey(0), mirror * (specular_.precise_value(at, normal_, direction, view_, nv_) * at.nl), t_.grey(0)};
     if (!is_interface_) values.diffuse = diffuse_.value(entered_) * at.nl;
     if (sheen_) {
       const Scalar cloth = sheen(sheen_->inverse_alpha, at.nh, at.nl, nv_) * at.nl;
@@ -61,7 +62,7 @@ class LayeredSurface {
     }
     if (coat_) {
       const LobeAngles<Triple> on_coat = lobe_angles(coat_->normal, view_, direction);
-      const Scalar lobe = ggx(coat_->alpha2, on_coat.nh, on_coat.nl, coat_->nv) * coat_reflectance(schlick(on_coat.vh));
+      const Scalar lobe = precise_ggx(coat_->alpha2, on_coat.nh, half_sine2(coat_->normal, on_coat), on_coat.nl, coat_->nv) * coat_reflectance(schlick(on_coat.vh));
       const Scalar value = coat_->strength * lobe * on_coat.nl;
       values.diffuse = values.diffuse * coat_->passed;
       values.specular = values.specular * coat_->passed;
@@ -179,9 +180,6 @@ Triple proportion(SurfaceTerms& t, Field field) {
   const Scalar share = t.field(field);
   return {share, share, share};
 }
-/// The texture that multiplies emission, alone: its factors are the light's colour and intensity.
-Triple emission_image(SurfaceTerms& t) { return t.has(Slot::emissive) ? t.texel3(Slot::emissive) : t.grey(1); }
-
 /// The light that comes through a branch, before coverage. Columns that a surface has for one channel are made for
 /// each (KHR_materials_dispersion).
 struct ScatteredColumns {
@@ -200,7 +198,8 @@ Triple lobe_weight(SurfaceTerms& t, Surface& surface, Branch branch) {
 
 ScatteredColumns layered_columns(SurfaceTerms& t, const PathKey& key) {
   LayeredSurface surface(t, key);
-  ScatteredColumns columns{{}, emission_image(t) * surface.below(false), t.grey(0)};
+  const Scalar shown = surface.below(false);
+  ScatteredColumns columns{{}, {shown, shown, shown}, t.grey(0)};
   for (const Branch branch : branches_of(key.children)) {
     if (branch == Branch::transparency) continue;
     if (branch == Branch::reflection)
@@ -249,7 +248,7 @@ ScatteredColumns metallic_columns(SurfaceTerms& t, const PathKey& key) {
 
 ScatteredColumns phong_columns(SurfaceTerms& t, const PathKey& key) {
   PhongSurface surface(t);
-  ScatteredColumns columns{{}, emission_image(t), key.gathers ? t.grey(0) : surface.ambient()};
+  ScatteredColumns columns{{}, t.grey(1), key.gathers ? t.grey(0) : surface.ambient()};
   for (const Branch branch : branches_of(key.children)) {
     if (branch == Branch::reflection) columns.weights.push_back(proportion(t, Field::reflection));
     if (branch == Branch::refraction) columns.weights.push_back(proportion(t, Field::refraction));

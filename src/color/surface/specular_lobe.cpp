@@ -24,7 +24,16 @@ SpecularLobe::SpecularLobe(SurfaceTerms& terms, Scalar roughness)
 }
 
 Scalar SpecularLobe::value(const LobeAngles<Triple>& at, const Triple& direction, const Triple& view, Scalar nv) const {
-  const Scalar isotropic = ggx(alpha2_, at.nh, at.nl, nv);
+  return brushed_or(ggx(alpha2_, at.nh, at.nl, nv), at, direction, view, nv);
+}
+
+Scalar SpecularLobe::precise_value(const LobeAngles<Triple>& at, const Triple& normal, const Triple& direction,
+                                   const Triple& view, Scalar nv) const {
+  return brushed_or(precise_ggx(alpha2_, at.nh, half_sine2(normal, at), at.nl, nv), at, direction, view, nv);
+}
+
+Scalar SpecularLobe::brushed_or(Scalar isotropic, const LobeAngles<Triple>& at, const Triple& direction,
+                                const Triple& view, Scalar nv) const {
   if (!brush_) return isotropic;
   const Scalar alpha = alpha_of(roughness_);
   const auto seen = [&](const Triple& way, Scalar up) {

@@ -16,10 +16,15 @@ class SpecularLobe {
   /// D V, for the light at `direction`.
   [[nodiscard]] Scalar value(const LobeAngles<Triple>& at, const Triple& direction, const Triple& view,
                              Scalar nv) const;
+  /// The same where narrow lobes keep all their light (precise_ggx). `normal`: of the lobe.
+  [[nodiscard]] Scalar precise_value(const LobeAngles<Triple>& at, const Triple& normal, const Triple& direction,
+                                     const Triple& view, Scalar nv) const;
   /// Of the wider direction: a surface mirrors as far as it is smooth both ways.
   [[nodiscard]] Scalar mirror_roughness() const;
 
  private:
+  [[nodiscard]] Scalar brushed_or(Scalar isotropic, const LobeAngles<Triple>& at, const Triple& direction,
+                                  const Triple& view, Scalar nv) const;
   /// Which way the lobe is wider, and by how much.
   struct Brush {
     BrushAxes<Triple> axes;

@@ -39,11 +39,9 @@ bool holds_camera(const SceneState& state, const std::string& node) {
 }
 
 /// The path in the look document of a pointer into the glTF document: entities have names there instead of indices, and
-/// /extensions/KHR_lights_punctual/lights is /lights.
+/// the lights of both extensions stand in /lights.
 Tokens look_path(const LookDocument& document, Tokens tokens) {
-  const Tokens lights{"extensions", "KHR_lights_punctual", "lights"};
-  if (tokens.size() > lights.size() && std::equal(lights.begin(), lights.end(), tokens.begin()))
-    tokens.erase(tokens.begin(), tokens.begin() + 2);
+  resolve_light_place(document, tokens);
   if (const auto section = section_of(tokens[0]); section && tokens.size() > 1)
     tokens[1] = resolve_token(document, *section, tokens[1]);
   return tokens;

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "scene/compile/light_shape.h"
 #include "scene/look/look_schema.h"
 #include "scene/texture/image_stream.h"
 
@@ -119,6 +120,37 @@ TextureSlot slot_of(const CompileContext& context, const Json& info, bool is_col
   return slot;
 }
 
+double number_or(const Json& value, std::initializer_list<std::string_view> keys, double fallback) {
+  const Json* number = member_at(value, keys);
+  return number == nullptr ? fallback : number->get<double>();
+}
+
+/// What of a light only Integrator::path reads.
+void set_size(const Json& value, Light& light) {
+  const LightTraits& traits = traits_of(light.kind);
+  const auto at_least = [](double x, float smallest) { return x > 0 ? std::max(static_cast<float>(x), smallest) : 0; };
+  if (traits.has_radius) light.radius = at_least(number_or(value, {"extras", "relook", "radius"}, 0), kSmallestLight);
+  if (traits.has_angle) light.angle = at_least(number_or(value, {"extras", "relook", "angle"}, 0), kSmallestAngle);
+  light.rate = std::max(static_cast<float>(number_or(value, {"extras", "relook", "rate"}, 1)), kSmallestRate);
+  if (!traits.has_size) return;
+  const double height = number_or(value, {"size"}, 1);
+  const double aspect = light.kind == LightKind::rect ? number_or(value, {"rect", "aspect"}, 1) : 1;
+  light.right.x = static_cast<float>(height * aspect / 2);
+  light.up.y = static_cast<float>(height / 2);
+}
+
+/// What an environment and a background have in common.
+template <class Sky>
+void set_sky(const CompileContext& context, const Json& value, const std::string& pointer, Sky& sky) {
+  if (value.contains("image")) sky.image = pyramid_of(context, value["image"], true, pointer + "/image");
+  if (value.contains("color"))
+    sky.color = color_of(value["color"]);
+  else if (sky.image != nullptr)
+    sky.color = Color(1, 1, 1);
+  sky.intensity = float_of(value["intensity"]);
+  sky.rotation = float_of(value["rotation"]);
+}
+
 void set_member(const Json& value, const MaterialRow&, float& member) { member = float_of(value); }
 void set_member(const Json& value, const MaterialRow&, bool& member) { member = value.get<bool>(); }
 void set_member(const Json& value, const MaterialRow&, Color& member) { member = color_of(value); }
@@ -207,12 +239,22 @@ Displacement compile_displacement(const CompileContext& context, const Json& val
   return displacement;
 }
 
-Light compile_light(std::string_view file, const std::string& name, const Json& value, const std::string& pointer) {
+const Json* light_name_of(const Json& node) {
+  for (const char* extension : {"KHR_lights_punctual", "EXT_lights_area"})
+    if (const Json* light = member_at(node, {"extensions", extension, "light"})) return light;
+  return nullptr;
+}
+
+Light compile_light(std::string_view file, const std::string& name, const Json& value, const std::string& pointer,
+                    Integrator integrator) {
   Light light;
   light.light = name;
   light.kind = enum_of<LightKind>(value["type"], light_words());
   light.color = color_of(value["color"]);
   light.intensity = float_of(value["intensity"]);
+  if (const double kelvin = number_or(value, {"extras", "relook", "temperature"}, 0); kelvin > 0)
+    light.color *= temperature_color(kelvin);
+  if (integrator == Integrator::path) set_size(value, light);
   if (value.contains("range") && traits_of(light.kind).has_place) light.range = float_of(value["range"]);
   if (!traits_of(light.kind).has_cone) return light;
   light.inner_cone = float_of(value["spot"]["innerConeAngle"]);
@@ -222,13 +264,16 @@ Light compile_light(std::string_view file, const std::string& name, const Json& 
   return light;
 }
 
-Environment compile_environment(const CompileContext& context, const Json& value) {
+Environment compile_environment(const CompileContext& context, const Json& value, Integrator integrator) {
+  const std::string pointer = "/scene/extras/relook/environment";
   Environment environment;
-  environment.color = color_of(value["color"]);
-  environment.intensity = float_of(value["intensity"]);
-  environment.rotation = float_of(value["rotation"]);
-  if (value.contains("image"))
-    environment.image = pyramid_of(context, value["image"], true, "/scene/extras/relook/environment/image");
+  set_sky(context, value, pointer, environment);
+  const Json* background = member_at(value, {"background"});
+  if (background != nullptr && !background->is_null()) {
+    Background sky;
+    set_sky(context, *background, pointer + "/background", sky);
+    if (integrator == Integrator::path) environment.background = std::move(sky);
+  }
   return environment;
 }
 

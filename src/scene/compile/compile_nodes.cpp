@@ -1,5 +1,5 @@
-// The node part of a compilation: parents and children, world transforms root to leaf, and the objects and lights that
-// nodes place.
+// The node part of a compilation: parents and children, world transforms root to leaf, and the objects that nodes
+// place. compile_lights.cpp has their lights.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,11 +21,6 @@ std::uint64_t object_key(const std::string& node, std::uint32_t primitive, std::
 }
 
 bool is_shown(const Json& node) { return node["extensions"]["KHR_node_visibility"]["visible"].get<bool>(); }
-
-Direction unit_direction(const Imath::V3d& v, double length) {
-  return {static_cast<float>(v.x / length) + 0.0F, static_cast<float>(v.y / length) + 0.0F,
-          static_cast<float>(v.z / length) + 0.0F};
-}
 
 }  // namespace
 
@@ -55,14 +50,15 @@ void Compilation::update_nodes(const Entities& entities) {
     if (is_touched_node(entity) && entity.value == nullptr) forget_node(entity.place.name);
   for (const NodeVisit& visit : visits(entities)) visit_subtree(visit);
   update_skinned();
-  update_light_order();
+  update_excludes();
 }
 
 void Compilation::unlink_children(const TouchedEntity& node) {
   const auto references = index_.references.find(node);
   if (references == index_.references.end()) return;
   for (const TouchedEntity& child : references->second) {
-    if (child.section != "nodes" || !index_.nodes.contains(child.name)) continue;
+    const auto record = child.section == "nodes" ? index_.nodes.find(child.name) : index_.nodes.end();
+    if (record == index_.nodes.end() || record->second.parent != node.name) continue;  // a light's node excludes it
     editable_record(child.name).parent.clear();
     adopted_.push_back(child.name);
   }
@@ -93,11 +89,7 @@ void Compilation::forget_node(const std::string& node) {
     gone.alive = false;
     set_object(id, std::move(gone));
   }
-  if (!record.light.is_none()) {
-    Light gone = scene_.light(record.light);
-    gone.alive = false;
-    set_light(record.light, std::move(gone));
-  }
+  if (!record.light.is_none()) end_light(record.light);
   index_.nodes.erase(found);
 }
 
@@ -321,61 +313,6 @@ void Compilation::set_object(ObjectId id, Object value) {
   if (now == value) return;
   if (notes_history_) old_objects_.try_emplace(id, now);
   now = std::move(value);
-}
-
-void Compilation::set_light(LightId id, Light value) {
-  Light& now = scene_.lights[id.index()];
-  if (now == value) return;
-  old_lights_.try_emplace(id, now);
-  now = std::move(value);
-}
-
-void Compilation::update_light(const std::string& name, const Json& node, NodeRecord& record) {
-  const auto punctual = node["extensions"].find("KHR_lights_punctual");
-  if (punctual == node["extensions"].end()) {
-    if (record.light.is_none()) return;
-    Light gone = scene_.light(record.light);
-    gone.alive = false;
-    set_light(record.light, std::move(gone));
-    record.light = LightId::none();
-    return;
-  }
-  const auto& light_name = (*punctual)["light"].get_ref<const std::string&>();
-  Light light = compile_light(context_.file, light_name, document_.look["lights"][light_name],
-                              "/lights/" + escape_token(light_name));
-  light.node = name;
-  require_range(record.world, name);
-  const Imath::V3d back(record.world[2][0], record.world[2][1], record.world[2][2]);
-  const double length = std::sqrt(back.x * back.x + back.y * back.y + back.z * back.z);
-  const bool has_direction = length > 1e-12;
-  if (traits_of(light.kind).has_direction && has_direction) light.direction = unit_direction(-back, length);
-  if (traits_of(light.kind).has_place)
-    for (int axis = 0; axis < 3; ++axis)
-      light.position[axis] = static_cast<float>(record.world[3][axis] - scene_.camera.eye[axis]) + 0.0F;
-  light.alive = record.visible && (has_direction || !traits_of(light.kind).has_direction);
-  const auto [slot, is_new] =
-      index_.lights.try_emplace(name, LightId(static_cast<std::uint32_t>(scene_.lights.size())));
-  if (is_new) {
-    Light none;
-    none.node = name;
-    none.alive = false;
-    scene_.lights.push_back(std::move(none));
-    new_lights_.push_back(name);
-  }
-  record.light = slot->second;
-  set_light(slot->second, std::move(light));
-}
-
-void Compilation::update_light_order() {
-  constexpr std::size_t kMostLights = std::size_t{1} << 20;  // colour programs name them with 20 bits
-  if (old_lights_.empty()) return;
-  scene_.light_order.clear();
-  for (std::uint32_t i = 0; i < scene_.lights.size(); ++i)
-    if (scene_.lights[i].alive) scene_.light_order.emplace_back(i);
-  if (scene_.light_order.size() > kMostLights)
-    fail("/lights", "a scene has at most " + std::to_string(kMostLights) + " lights");
-  std::sort(scene_.light_order.begin(), scene_.light_order.end(),
-            [&](LightId a, LightId b) { return scene_.light(a).node < scene_.light(b).node; });
 }
 
 void Compilation::check_camera() const {

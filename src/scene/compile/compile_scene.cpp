@@ -64,6 +64,8 @@ void Compilation::compile(const Entities& entities) {
     if (entity.place.section == "scene") update_scene_entry();
   }
   update_nodes(entities);
+  update_emission(entities);
+  update_light_order();
   for (const Entity& entity : entities)
     if (entity.is_touched) update_references(entity);
   check_camera();
@@ -154,9 +156,10 @@ void Compilation::update_material(const Entity& entity) {
 void Compilation::update_scene_entry() {
   const Json& relook = document_.look.at("scene")["extras"]["relook"];
   const Color ambient = color_of(relook["ambient"]);
-  Environment environment = compile_environment(context_, relook["environment"]);
+  Environment environment = compile_environment(context_, relook["environment"], scene_.integrator);
   if (ambient != scene_.ambient) old_ambient_ = std::exchange(scene_.ambient, ambient);
   if (environment != scene_.environment) old_environment_ = std::exchange(scene_.environment, std::move(environment));
+  update_suns();
 }
 
 SceneDelta Compilation::delta() {
@@ -188,10 +191,13 @@ void Compilation::roll_back() {
   for (auto& [id, light] : old_lights_) scene_.lights[id.index()] = std::move(light);
   scene_.materials.resize(scene_.materials.size() - new_materials_.size());
   scene_.objects.resize(scene_.objects.size() - new_objects_.size());
-  scene_.lights.resize(scene_.lights.size() - new_lights_.size());
+  for (; new_lights_ > 0; --new_lights_) {
+    index_.forget(scene_.lights.back());
+    scene_.lights.pop_back();
+  }
+  if (old_excluding_) index_.excluding = std::move(*old_excluding_);
   for (const std::string& name : new_materials_) index_.materials.erase(name);
   for (std::uint64_t key : new_objects_) index_.objects.erase(key);
-  for (const std::string& node : new_lights_) index_.lights.erase(node);
   if (old_ambient_) scene_.ambient = *old_ambient_;
   if (old_environment_) scene_.environment = std::move(*old_environment_);
   scene_.light_order = std::move(old_order_);

@@ -45,8 +45,14 @@ struct SceneIndex {
   std::unordered_map<std::uint64_t, ObjectId> objects;  // by key
   std::size_t first_objects = 0;                        // slots of the scene as it was opened
   std::unordered_map<std::string, LightId> lights;      // by node
+  std::unordered_map<MaterialId, LightId> emission;     // under Integrator::path, as the next two
+  LightId suns;
+  std::set<std::string> excluding;                      // nodes whose light excludes others
   std::unordered_map<TouchedEntity, std::vector<TouchedEntity>, TouchedEntityHash> references;
   std::unordered_map<TouchedEntity, std::unordered_set<TouchedEntity, TouchedEntityHash>, TouchedEntityHash> users;
+
+  /// The slot of a light is no more.
+  void forget(const Light& light);
 };
 
 /// The most objects, primitives times instances, that edits may add to a scene. Removed ones keep their slots.
@@ -113,14 +119,23 @@ class Compilation {
   void update_skinned();
   [[nodiscard]] Pose pose_of(const Json& node) const;
   void require_range(const WideTransform& world, const std::string& node) const;
-  void update_light(const std::string& name, const Json& node, NodeRecord& record);
   ObjectId object_slot(const std::string& node, std::uint32_t primitive, std::uint32_t instance);
   void set_object(ObjectId id, Object value);
-  void set_light(LightId id, Light value);
-  void update_light_order();
   void check_camera() const;
   NodeRecord& editable_record(const std::string& node);
   void note(const std::string& node, const NodeRecord& record);
+
+  // compile_lights.cpp
+  void update_light(const std::string& name, const Json& node, NodeRecord& record);
+  [[nodiscard]] LightId new_light(Light none);
+  void set_light(LightId id, Light value);
+  void end_light(LightId id);
+  void set_excluding(const std::string& node, bool excludes);
+  void update_excludes();
+  [[nodiscard]] std::vector<ObjectId> objects_below(const Json& nodes) const;
+  void update_suns();
+  void update_emission(const Entities& entities);
+  void update_light_order();
 
   const LookDocument& document_;
   Scene& scene_;
@@ -136,7 +151,9 @@ class Compilation {
   std::map<MaterialId, Material> old_materials_;
   std::map<ObjectId, Object> old_objects_;
   std::map<LightId, Light> old_lights_;
-  std::vector<std::string> new_materials_, new_lights_;
+  std::vector<std::string> new_materials_;
+  std::size_t new_lights_ = 0;
+  std::optional<std::set<std::string>> old_excluding_;
   std::vector<std::uint64_t> new_objects_;
   std::optional<Color> old_ambient_;
   std::optional<Environment> old_environment_;

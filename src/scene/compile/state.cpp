@@ -21,7 +21,7 @@ std::vector<CompiledEntity> checked_entities(const LookDocument& document) {
   return entities;
 }
 
-/// Compiles a whole document. `scene` has its assets and its camera, and nothing else; `index` is empty.
+/// Compiles a whole document. `scene` has its integrator, its assets and its camera, and nothing else; `index` is empty.
 void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index) {
   const std::vector<CompiledEntity> entities = checked_entities(document);
   decode_images(document, pyramids);
@@ -46,10 +46,12 @@ void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& sc
 
 struct SceneState::Index : SceneIndex {};
 
-SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<PyramidStore> pyramids)
+SceneState::SceneState(LookDocument document, Camera camera, std::shared_ptr<PyramidStore> pyramids,
+                       Integrator integrator)
     : document_(std::move(document)), pyramids_(std::move(pyramids)), index_(std::make_shared<Index>()) {
   set_float_mode();
   if (pyramids_ == nullptr) pyramids_ = std::make_shared<PyramidStore>();
+  scene_.integrator = integrator;
   scene_.assets = document_.assets;
   scene_.camera = std::move(camera);
   check_sections(document_, document_.file);
@@ -74,7 +76,7 @@ void SceneState::drop_slots_after(const SlotCounts& counts) {
   for (std::size_t i = counts.materials; i < scene_.materials.size(); ++i)
     index_->materials.erase(scene_.materials[i].name);
   for (std::size_t i = counts.objects; i < scene_.objects.size(); ++i) index_->objects.erase(scene_.objects[i].key);
-  for (std::size_t i = counts.lights; i < scene_.lights.size(); ++i) index_->lights.erase(scene_.lights[i].node);
+  for (std::size_t i = counts.lights; i < scene_.lights.size(); ++i) index_->forget(scene_.lights[i]);
   scene_.materials.resize(counts.materials);
   scene_.objects.resize(counts.objects);
   scene_.lights.resize(counts.lights);
@@ -85,9 +87,11 @@ SceneDelta SceneState::recompile(const std::vector<TouchedEntity>& touched, std:
   return Compilation(document_, *pyramids_, scene_, *index_, file).run(touched);
 }
 
-Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids) {
+Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids,
+                     Integrator integrator) {
   set_float_mode();
   Scene scene;
+  scene.integrator = integrator;
   scene.assets = document.assets;
   scene.camera = camera;
   SceneIndex index;

@@ -27,7 +27,8 @@ struct SlotCounts {
 class SceneState {
  public:
   /// Compiles the whole document. Throws InputError{document.file, pointer, ...}.
-  SceneState(LookDocument document, Camera camera, std::shared_ptr<PyramidStore> pyramids);
+  SceneState(LookDocument document, Camera camera, std::shared_ptr<PyramidStore> pyramids,
+             Integrator integrator = Integrator::whitted);
   SceneState(SceneState&&) noexcept = default;
   SceneState& operator=(SceneState&&) noexcept = default;
   SceneState(const SceneState&) = delete;  // two states must not edit one set of assets
@@ -63,6 +64,7 @@ class SceneState {
 /// Compiles a document that has all its defaults, such as a SceneState's, from scratch and without a copy of it. The
 /// result is the scene that a SceneState keeps up, in other slots perhaps. Throws InputError{document.file, pointer,
 /// ...}.
-[[nodiscard]] Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids);
+[[nodiscard]] Scene compiled_scene(const LookDocument& document, const Camera& camera, PyramidStore& pyramids,
+                                   Integrator integrator = Integrator::whitted);
 
 }  // namespace relook

@@ -160,6 +160,34 @@ bool is_solid(const Json& material) {
          is_positive("/extensions/KHR_materials_transmission/transmissionFactor");
 }
 
+/// What lights of some kinds have and others lack.
+void fill_light(Json& light) {
+  constexpr double kAreaIntensity = 1000;  // nits: EXT_lights_area
+  const Json type = light.value("type", Json());
+  if (type == "spot" && !light.contains("spot")) light["spot"] = Json::object();
+  if (type != "rect" && type != "disk") return;
+  if (!light.contains("intensity")) light["intensity"] = kAreaIntensity;
+  if (!light.contains("size")) light["size"] = 1.0;
+  if (type == "rect" && !light.contains("rect")) light["rect"] = Json::object();
+}
+
+/// The lights of both extensions, as LookDocument::order has them but for the gap.
+Json all_lights(const Json& gltf) {
+  Json lights = gltf_array(gltf, Section::lights);
+  for (const Json& light : gltf_area_lights(gltf)) lights.push_back(light);
+  return lights;
+}
+
+/// Names the lights, and adds them. Requires: sections before are there.
+void add_lights(const Json& gltf, LookDocument& document) {
+  const Json lights = all_lights(gltf);
+  const std::size_t punctual = gltf_array(gltf, Section::lights).size();
+  auto& order = document.order[static_cast<std::size_t>(Section::lights)];
+  order = names_of(lights, target_noun(Target::lights));
+  for (std::size_t i = 0; i < lights.size(); ++i) add_entity(document, Section::lights, i, lights[i]);
+  if (lights.size() > punctual) order.insert(order.begin() + static_cast<std::ptrdiff_t>(punctual), "");
+}
+
 }  // namespace
 
 void fill_defaults(Section section, Json& value) {
@@ -172,8 +200,7 @@ void fill_defaults(Section section, Json& value) {
       extras["relook"]["model"] = "unlit";
   }
   if (section == Section::materials && !value.contains("doubleSided") && is_solid(value)) value["doubleSided"] = true;
-  if (section == Section::lights && value.value("type", Json()) == "spot" && !value.contains("spot"))
-    value["spot"] = Json::object();
+  if (section == Section::lights) fill_light(value);
   if (section == Section::nodes && value.contains("matrix")) {
     // A node has either a matrix or translation, rotation and scale: no defaults for the latter beside the former.
     const Json given = value;
@@ -193,7 +220,8 @@ LookDocument make_look_document(ImportedGltf imported) {
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const auto section = static_cast<Section>(s);
     document.look[std::string(section_name(section))] = Json::object();
-    document.order[s] = names_of(gltf_array(gltf, section), target_noun(static_cast<Target>(s)));
+    if (section != Section::lights)
+      document.order[s] = names_of(gltf_array(gltf, section), target_noun(static_cast<Target>(s)));
   }
   move_assets(imported, document);
   const std::vector<std::size_t> active = active_nodes(gltf);
@@ -202,6 +230,10 @@ LookDocument make_look_document(ImportedGltf imported) {
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const auto section = static_cast<Section>(s);
     if (section == Section::nodes) continue;
+    if (section == Section::lights) {
+      add_lights(gltf, document);
+      continue;
+    }
     const Json& items = gltf_array(gltf, section);
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (section == Section::skins && !document.inverse_binds.contains(document.order[s][i])) continue;

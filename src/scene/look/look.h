@@ -22,7 +22,9 @@ inline constexpr std::size_t kSectionCount = 8;
 /// A look document with what it refers to.
 struct LookDocument {
   Json look;                                                  // see README.md, "The look document"
-  std::array<std::vector<std::string>, kSectionCount> order;  // glTF index -> name, per section (numbers as names)
+  // glTF index -> name, per section (numbers as names). Of lights those of KHR_lights_punctual; then, if there are any
+  // of EXT_lights_area, a gap "" and these.
+  std::array<std::vector<std::string>, kSectionCount> order;
   std::map<std::string, std::vector<Transform>, std::less<>> instances;  // node name -> EXT_mesh_gpu_instancing
   std::map<std::string, std::vector<Transform>, std::less<>> inverse_binds;  // skin name -> a matrix a joint
   Json cameras;  // glTF cameras by name: {"node": name or "", "camera": {...}, "index": glTF's}
@@ -37,8 +39,10 @@ struct LookDocument {
 void fill_defaults(Section section, Json& value);
 
 /// --lights auto: adds lights and nodes `key`, `fill` and `rim`, which shine from outside, and a `lamp` at the camera
-/// if it stands in a closed room. Returns a sentence about the lamp, or "" if there is none.
-[[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera);
+/// if it stands in a closed room; under Integrator::path a grey environment where there is none. Returns a sentence about
+/// the lamp, or "" if there is none.
+[[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera,
+                                          Integrator integrator = Integrator::whitted);
 
 /// Resolves --camera NAME | auto | EYE:TARGET:FOV ("" takes the first camera) at a resolution in pixels. Throws
 /// InputError when the scene has no such camera or nothing to frame, UsageError for a wrong EYE:TARGET:FOV.

@@ -32,6 +32,9 @@ void check_skin(const LookDocument& document, const Json& value, std::string_vie
 }
 
 void check_node(const LookDocument& document, const Json& value, std::string_view file, const std::string& pointer) {
+  if (member_at(value, {"extensions", "KHR_lights_punctual"}) != nullptr &&
+      member_at(value, {"extensions", "EXT_lights_area"}) != nullptr)
+    throw LookError(file, pointer + "/extensions", "a node has one light: of KHR_lights_punctual or EXT_lights_area");
   const Json* key = member_at(value, {"extras", "relook", "instances"});
   if (key != nullptr && !document.instances.contains(key->get_ref<const std::string&>()))
     throw LookError(file, pointer + "/extras/relook/instances", "the scene has no such instances");

@@ -1,6 +1,7 @@
 // --lights auto: a key, a fill and a rim light, as directional lights placed relative to the camera, so that they do
 // not depend on the size of the scene. A white diffuse surface that faces the key alone has a value of 0.8. Where none
-// of them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at.
+// of them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at. Under
+// Integrator::path a grey environment joins them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -113,9 +114,23 @@ void add_light(LookDocument& document, const char* wanted, Json light, Json node
 
 constexpr double kKeyDiffuse = 0.8;
 
+/// Gives a scene whose environment is black a soft grey one: enough for metals to have something to reflect, little
+/// enough that white in the key light stays near 1.
+void add_environment(LookDocument& document) {
+  constexpr double kGrey = 0.35;
+  Json& environment = document.look.at("scene")["extras"]["relook"]["environment"];
+  const auto color = environment.find("color");
+  const bool is_black = color == environment.end() ? !environment.contains("image") : *color == Json({0.0, 0.0, 0.0});
+  if (!is_black && environment.at("intensity") != 0) return;
+  environment.erase("image");
+  environment["color"] = {kGrey, kGrey, kGrey};
+  environment["intensity"] = 1.0;
+}
+
 }  // namespace
 
-std::string add_auto_lights(LookDocument& document, const Camera& camera) {
+std::string add_auto_lights(LookDocument& document, const Camera& camera, Integrator integrator) {
+  if (integrator == Integrator::path) add_environment(document);
   const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, {1.0, 0.97, 0.92}},
                               {"fill", 0.9, 0.3, 0.6, 0.22, {0.92, 0.96, 1.0}},
                               {"rim", 0.3, 0.7, -0.9, 0.4, {1.0, 1.0, 1.0}}};

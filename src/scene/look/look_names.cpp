@@ -51,22 +51,58 @@ const std::string* camera_of_index(const LookDocument& document, std::uint64_t i
 /// The name of glTF index `index`, if the scene file has that many.
 const std::string* name_of_index(const LookDocument& document, Section section, std::uint64_t index) {
   const auto& order = document.order[static_cast<std::size_t>(section)];
-  return index < order.size() ? &order[index] : nullptr;
+  return index < order.size() && !order[index].empty() ? &order[index] : nullptr;
+}
+
+/// Where the lights of EXT_lights_area begin.
+std::size_t first_area_light(const LookDocument& document) {
+  const auto& order = document.order[static_cast<std::size_t>(Section::lights)];
+  const auto gap = std::ranges::find(order, "");
+  return static_cast<std::size_t>(gap - order.begin()) + 1;
+}
+
+/// The node's light of EXT_lights_area counts in an array of its own.
+void name_area_light(const LookDocument& document, Json& node) {
+  const Json::json_pointer place("/extensions/EXT_lights_area/light");
+  if (!node.is_object() || !node.contains(place) || !node[place].is_number_unsigned()) return;
+  const std::uint64_t index = node[place].get<std::uint64_t>();
+  const std::string* name =
+      index > UINT32_MAX ? nullptr : name_of_index(document, Section::lights, index + first_area_light(document));
+  if (name != nullptr) node[place] = std::string(*name);
+}
+
+/// The index that a token of a JSON pointer is: no leading zeros, nine digits at most.
+std::optional<std::size_t> index_of_token(const std::string& token) {
+  constexpr std::size_t kLongestIndex = 9;
+  const bool is_index = !token.empty() && token.size() <= kLongestIndex && (token == "0" || token[0] != '0') &&
+                        std::all_of(token.begin(), token.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return is_index ? std::optional(std::stoul(token)) : std::nullopt;
 }
 
 }  // namespace
 
+void resolve_light_place(const LookDocument& document, std::vector<std::string>& tokens) {
+  const bool is_light = tokens.size() > 2 && tokens[0] == "extensions" && tokens[2] == "lights";
+  const bool is_area = is_light && tokens[1] == "EXT_lights_area";
+  if (!is_area && !(is_light && tokens[1] == "KHR_lights_punctual")) return;
+  tokens.erase(tokens.begin(), tokens.begin() + 2);
+  if (!is_area || tokens.size() < 2 || document.look.at("lights").contains(tokens[1])) return;
+  const std::optional<std::size_t> index = index_of_token(tokens[1]);
+  const std::string* name =
+      index ? name_of_index(document, Section::lights, *index + first_area_light(document)) : nullptr;
+  if (name != nullptr) tokens[1] = *name;
+}
+
 std::string resolve_token(const LookDocument& document, Section section, const std::string& token) {
-  constexpr std::size_t kLongestIndex = 9;
   const Json& entities = document.look.at(std::string(section_name(section)));
-  const bool is_index = !token.empty() && token.size() <= kLongestIndex && (token == "0" || token[0] != '0') &&
-                        std::all_of(token.begin(), token.end(), [](char c) { return c >= '0' && c <= '9'; });
-  if (!is_index || entities.contains(token)) return token;
-  const std::string* name = name_of_index(document, section, std::stoull(token));
+  const std::optional<std::size_t> index = index_of_token(token);
+  if (!index || entities.contains(token)) return token;
+  const std::string* name = name_of_index(document, section, *index);
   return name == nullptr ? token : *name;
 }
 
 void name_indices(const LookDocument& document, Section section, Json& value) {
+  if (section == Section::nodes) name_area_light(document, value);
   visit_names(schema_of(section), value, [&](Target target, Json& reference) {
     if (!reference.is_number_unsigned()) return;
     const auto index = reference.get<std::uint64_t>();

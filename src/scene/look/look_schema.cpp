@@ -15,6 +15,8 @@ constexpr double kLargest = kCeiling;
 constexpr double kHuge = kUnbounded;  // where a float's infinity does no harm
 constexpr double kRightAngle = 1.5707963267948966;
 constexpr double kBelowPi = 3.1415926;
+constexpr double kPi = 3.141592653589793;
+constexpr double kCoolest = 1000, kHottest = 40000;  // kelvin: where light_color (compile/light_shape.h) has sources
 
 SchemaField number(std::string_view key, Json fallback, double low, double high) {
   return {.key = key, .kind = FieldKind::number, .fallback = std::move(fallback), .low = low, .high = high};
@@ -25,14 +27,18 @@ SchemaField integer(std::string_view key, Json fallback, double low, double high
 SchemaField code(std::string_view key, Json fallback, std::vector<int> codes) {
   return {.key = key, .kind = FieldKind::integer, .fallback = std::move(fallback), .codes = std::move(codes)};
 }
-SchemaField boolean(std::string_view key, bool fallback) {
-  return {.key = key, .kind = FieldKind::boolean, .fallback = fallback};
+SchemaField boolean(std::string_view key, Json fallback) {
+  return {.key = key, .kind = FieldKind::boolean, .fallback = std::move(fallback)};
 }
 SchemaField text(std::string_view key) { return {.key = key, .kind = FieldKind::text, .fallback = {}}; }
 SchemaField reals(std::string_view key, Json fallback, double low, double high) {
   const std::size_t count = fallback.size();
   return {
       .key = key, .kind = FieldKind::reals, .fallback = std::move(fallback), .low = low, .high = high, .count = count};
+}
+/// A colour without a default.
+SchemaField color(std::string_view key) {
+  return {.key = key, .kind = FieldKind::reals, .fallback = {}, .low = 0, .high = kMost, .count = 3};
 }
 /// Any number of them.
 SchemaField numbers(std::string_view key, double low, double high) {
@@ -60,6 +66,10 @@ SchemaField optional(std::string_view key, const Schema& inner) {
 /// A field whose default documents omit, see SchemaField::unwritten.
 SchemaField unwritten(SchemaField field) {
   field.unwritten = true;
+  return field;
+}
+SchemaField nullable(SchemaField field) {
+  field.nullable = true;
   return field;
 }
 SchemaField or_zero(SchemaField field) {
@@ -195,25 +205,54 @@ const Schema& mesh_schema() {
   return mesh;
 }
 
-const Schema& light_schema() {
+/// What lights have wherever they stand. `types`: words that their type may be.
+std::vector<SchemaField> light_fields(std::span<const std::string_view> types) {
+  return {text("name"), choice("type", {}, {types.begin(), types.end()}, true),
+          reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kLargest)};
+}
+std::vector<SchemaField> punctual_fields() {
   static const Schema spot{{number("innerConeAngle", 0.0, 0, kRightAngle),
                             number("outerConeAngle", 0.7853981633974483, 0, kRightAngle)}};
-  constexpr auto kWords = light_words();
-  static const Schema light{{text("name"), choice("type", {}, {kWords.begin(), kWords.begin() + kDocumentLightKinds}, true),
-                             reals("color", {1.0, 1.0, 1.0}, 0, kMost), number("intensity", 1.0, 0, kLargest),
-                             unwritten(number("range", {}, kAboveZero, kHuge)), optional("spot", spot)}};
+  return {unwritten(number("range", {}, kAboveZero, kHuge)), optional("spot", spot)};
+}
+/// EXT_lights_area; fill_defaults() gives lights with an area what is missing.
+std::vector<SchemaField> area_fields() {
+  static const Schema rect{{number("aspect", 1.0, kAboveZero, kLargest)}};
+  return {number("size", {}, kAboveZero, kLargest), optional("rect", rect)};
+}
+Schema joined(std::initializer_list<std::vector<SchemaField>> parts) {
+  Schema schema;
+  for (const std::vector<SchemaField>& part : parts)
+    schema.fields.insert(schema.fields.end(), part.begin(), part.end());
+  return schema;
+}
+
+constexpr auto kLightWords = light_words();
+constexpr std::span<const std::string_view> kDocumentWords(kLightWords.data(), kDocumentLightKinds);
+/// Rows with an area come after those without.
+constexpr std::size_t kPunctualKinds = static_cast<std::size_t>(LightKind::rect);
+
+const Schema& light_schema() {
+  static const Schema relook{{unwritten(number("radius", {}, 0, kMost)), unwritten(number("angle", {}, 0, kPi)),
+                              unwritten(or_zero(number("temperature", {}, kCoolest, kHottest))),
+                              unwritten(number("rate", {}, kAboveZero, 1))}};
+  static const Schema extras = wrapped("relook", relook, false);
+  static const Schema light =
+      joined({light_fields(kDocumentWords), punctual_fields(), area_fields(), {optional("extras", extras)}});
   return light;
 }
 
 const Schema& node_schema() {
   static const Schema light{{name("light", Target::lights, true)}};
   static const Schema visibility{{boolean("visible", true)}};
-  static const Schema extensions{{optional("KHR_lights_punctual", light), implied("KHR_node_visibility", visibility)}};
+  static const Schema extensions{{optional("KHR_lights_punctual", light), optional("EXT_lights_area", light),
+                                  implied("KHR_node_visibility", visibility)}};
   static const Schema displacement{{name("texture", Target::textures, true), number("scale", 0.1, -kMost, kMost),
                                     number("midlevel", 0.5, -kMost, kMost), integer("subdivide", 0, 0, 6),
                                     texture_coordinates(), texture_transform(),
                                     unwritten(optional("mapping", mapping_schema()))}};
-  static const Schema relook{{optional("displacement", displacement), text("instances")}};
+  static const Schema relook{{optional("displacement", displacement), text("instances"),
+                              unwritten(boolean("visible", {})), unwritten(names("excludes", Target::nodes))}};
   static const Schema extras = wrapped("relook", relook, false);
   static const Schema node = [] {
     SchemaField children = names("children", Target::nodes);
@@ -263,13 +302,31 @@ const Schema& schema_of(Section section) {
 }
 
 const Schema& scene_schema() {
-  static const Schema environment{{reals("color", {0.0, 0.0, 0.0}, 0, kMost),
-                                   number("intensity", 1.0, 0, kLargest), number("rotation", 0.0, -kMost, kMost),
-                                   name("image", Target::images)}};
+  // Without a colour, an image stands as it is, and no image is black.
+  const auto sky = [] {
+    return std::vector<SchemaField>{unwritten(color("color")), number("intensity", 1.0, 0, kLargest),
+                                    number("rotation", 0.0, -kMost, kMost), name("image", Target::images)};
+  };
+  static const Schema background{sky()};
+  static const Schema environment = [&] {
+    Schema all{sky()};
+    all.fields.push_back(nullable(unwritten(optional("background", background))));
+    return all;
+  }();
   static const Schema relook{{reals("ambient", {0.0, 0.0, 0.0}, 0, kMost), implied("environment", environment)}};
   static const Schema extras = wrapped("relook", relook);
   static const Schema scene{{text("name"), implied("extras", extras)}};
   return scene;
+}
+
+const Schema& punctual_light_schema() {
+  static const Schema light = joined({light_fields(kDocumentWords.first(kPunctualKinds)), punctual_fields()});
+  return light;
+}
+
+const Schema& area_light_schema() {
+  static const Schema light = joined({light_fields(kDocumentWords.subspan(kPunctualKinds)), area_fields()});
+  return light;
 }
 
 const Schema& extensions_schema() {

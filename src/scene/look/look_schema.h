@@ -53,6 +53,7 @@ struct SchemaField {
   // Its default cannot be written (an infinity) or depends on the mesh (a mapping), so documents omit it. An edit's
   // "replace" takes it as there all the same, as it does every other member with a default.
   bool unwritten = false;
+  bool nullable = false;  // null stands for its absence
 };
 struct Schema {
   std::vector<SchemaField> fields;
@@ -62,6 +63,9 @@ struct Schema {
 [[nodiscard]] const Schema& scene_schema();       // /scene
 [[nodiscard]] const Schema& extensions_schema();  // /extensions
 [[nodiscard]] const Schema& camera_schema();      // an entry of glTF's cameras
+/// A light of a file, by the extension that has it. Those of documents have all members of both.
+[[nodiscard]] const Schema& punctual_light_schema();
+[[nodiscard]] const Schema& area_light_schema();
 /// The schema of materials with other fields than those of schema_of(Section::materials). `parts` takes the schemas of
 /// inner objects.
 [[nodiscard]] Schema material_schema(std::span<const MaterialRow> rows, std::deque<Schema>& parts);

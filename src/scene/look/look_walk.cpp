@@ -101,6 +101,7 @@ class Checker {
   }
 
   void member(const SchemaField& field, const Json& value, const JsonPlace& place) const {
+    if (field.nullable && value.is_null()) return;
     switch (field.kind) {
       case FieldKind::number:
         number(field, value, place);

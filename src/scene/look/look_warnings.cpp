@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 
 #include "scene/compile/compile_material.h"
+#include "scene/compile/light_shape.h"
 #include "scene/light.h"
 #include "scene/look/look_bounds.h"
 #include "scene/look/look_schema.h"
@@ -42,6 +44,11 @@ bool may_flatten(const Json& node) {
          });
 }
 
+LightKind kind_of(const Json& light) {
+  constexpr auto kWords = light_words();
+  return static_cast<LightKind>(std::ranges::find(kWords, light.at("type").get<std::string>()) - kWords.begin());
+}
+
 /// What of a node's mesh is flattened to nothing, in words; "" if nothing is, or if a skin places it.
 std::string what_is_lost(const LookDocument& document, const Json& node, const WideTransform& world) {
   if (!node.contains("mesh") || node.contains("skin")) return "";
@@ -64,14 +71,44 @@ void warn_of_places(const LookDocument& document, std::vector<std::string>& warn
   for_each_place(document, [&](const std::string& name, const Json& node, const WideTransform& world) {
     if (const std::string lost = what_is_lost(document, node, world); !lost.empty())
       objects.add("node \"" + name + "\" is scaled to nothing: " + lost);
-    const Json* light = member_at(node, {"extensions", "KHR_lights_punctual", "light"});
-    if (light == nullptr) return;
-    const Json& type = document.look.at("lights").at(light->get<std::string>()).at("type");
-    const bool needs_none = std::ranges::any_of(
-        kLightTraits, [&](const LightTraits& kind) { return type == kind.word && !kind.has_direction; });
-    if (needs_none || Imath::V3d(world[2][0], world[2][1], world[2][2]).length() > 1e-12) return;
+    const Json* name_of_light = light_name_of(node);
+    if (name_of_light == nullptr) return;
+    Light light;
+    light.kind = kind_of(document.look.at("lights").at(name_of_light->get<std::string>()));
+    if (place_light(world, WidePoint(0, 0, 0), light)) return;
     lights.add("node \"" + name + "\" is scaled to nothing: its light has no direction and gives no light");
   });
+}
+
+/// One sentence on the lights of a kind that Integrator::whitted does without.
+void warn_of_kind(const LookDocument& document, const std::function<bool(const Json&)>& is_meant,
+                  std::string_view what, std::string_view fault, std::vector<std::string>& warnings) {
+  std::size_t count = 0;
+  std::string first;
+  for (const auto& light : document.look.at("lights").items())
+    if (is_meant(light.value()) && count++ == 0) first = light.key();
+  if (count == 0) return;
+  warnings.push_back("light \"" + first + "\"" +
+                     (count > 1 ? " and " + std::to_string(count - 1) + " more have " : " has ") + std::string(what) +
+                     ": " + std::string(fault) + " only with --integrator path");
+}
+
+void warn_of_what_whitted_lacks(const LookDocument& document, std::vector<std::string>& warnings) {
+  warn_of_kind(document, [](const Json& light) { return traits_of(kind_of(light)).path_only; }, "an area",
+               "it gives light", warnings);
+  warn_of_kind(
+      document,
+      [](const Json& light) {
+        const LightTraits& traits = traits_of(kind_of(light));
+        const Json* radius = member_at(light, {"extras", "relook", "radius"});
+        const Json* angle = member_at(light, {"extras", "relook", "angle"});
+        return (traits.has_radius && radius != nullptr && *radius != 0) ||
+               (traits.has_angle && angle != nullptr && *angle != 0);
+      },
+      "a radius or an angle", "its shadows are soft", warnings);
+  const Json& environment = document.look.at("scene").at("extras").at("relook").at("environment");
+  if (environment.contains("image"))
+    warnings.emplace_back("the environment has an image: it lights surfaces only with --integrator path");
 }
 
 /// Visits the names of textures below a value.
@@ -113,10 +150,11 @@ void warn_of_textures(const LookDocument& document, std::vector<std::string>& wa
 
 }  // namespace
 
-std::vector<std::string> look_warnings(const LookDocument& document) {
+std::vector<std::string> look_warnings(const LookDocument& document, Integrator integrator) {
   std::vector<std::string> warnings;
   warn_of_places(document, warnings);
   warn_of_textures(document, warnings);
+  if (integrator == Integrator::whitted) warn_of_what_whitted_lacks(document, warnings);
   return warnings;
 }
 

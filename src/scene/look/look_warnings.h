@@ -9,7 +9,9 @@
 namespace relook {
 
 /// Nodes that are scaled to nothing, lights without a direction, textures without an image: one sentence each, with
-/// what it means for the picture. Requires: check_values() passed.
-[[nodiscard]] std::vector<std::string> look_warnings(const LookDocument& document);
+/// what it means for the picture; under Integrator::whitted one for each kind of light that it does without. Requires:
+/// check_values() passed.
+[[nodiscard]] std::vector<std::string> look_warnings(const LookDocument& document,
+                                                     Integrator integrator = Integrator::whitted);
 
 }  // namespace relook

@@ -15,6 +15,7 @@ struct PathState {
   float density = 0;          // per steradian, times the share of the lobe that sent it; 0: of no lobe, or bent since
   float alpha_floor = 0;      // least alpha of reflecting lobes from here on
   std::uint8_t glossy = 0;    // reflections so far
+  bool is_first = true;       // it is the first lobe's, or none has scattered it yet
   bool is_eye = true;         // nothing has turned it
   bool gathers = false;       // where it ends, emission counts and nothing is scattered
   bool is_shut = false;       // from a wide lobe, through volumes alone: lights with a size reach that lobe by segments

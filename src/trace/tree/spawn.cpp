@@ -204,6 +204,7 @@ void add_lobe_ray(Spawner& spawner, const RayNode& node, const VertexLobes& lobe
   PathState& path = ray->path;
   path.from = node.object;
   path.density = sample->density;
+  path.is_first = from.from.is_none();
   path.is_eye = false;
   path.is_shut = false;
   path.is_wide = lobes.is_wide(sample->lobe);

@@ -11,8 +11,9 @@
 namespace relook {
 namespace {
 
-constexpr std::array<std::string_view, 23> kSupportedExtensions = {
+constexpr std::array<std::string_view, 24> kSupportedExtensions = {
     "KHR_lights_punctual",
+    "EXT_lights_area",
     "KHR_materials_ior",
     "KHR_materials_dispersion",
     "KHR_materials_transmission",

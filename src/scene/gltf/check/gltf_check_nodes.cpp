@@ -1,4 +1,6 @@
 // Nodes, scenes, cameras and lights: what they refer to, a forest without cycles.
+#include <array>
+#include <string_view>
 #include <vector>
 
 #include "scene/gltf/check/gltf_check.h"
@@ -7,11 +9,16 @@
 namespace relook {
 namespace {
 
+constexpr std::array<std::string_view, 2> kLightExtensions{"KHR_lights_punctual", "EXT_lights_area"};
+
 void check_node_extensions(const JsonView& root, const JsonView& node) {
-  if (const auto light = extension(node, "KHR_lights_punctual")) {
-    const auto lights = extension(root, "KHR_lights_punctual");
-    (void)reference(light->at("light"), lights ? array_size(*lights, "lights") : 0, "light");
-  }
+  for (const std::string_view name : kLightExtensions)
+    if (const auto light = extension(node, name)) {
+      const auto lights = extension(root, name);
+      (void)reference(light->at("light"), lights ? array_size(*lights, "lights") : 0, "light");
+    }
+  if (extension(node, kLightExtensions[0]) && extension(node, kLightExtensions[1]))
+    node.at("extensions").at(kLightExtensions[1]).fail("the node has a light of KHR_lights_punctual, too: it may have one");
   if (const auto instancing = extension(node, "EXT_mesh_gpu_instancing")) {
     const JsonView attributes = instancing->at("attributes");
     attributes.require_object();
@@ -58,8 +65,9 @@ void check_nodes(const JsonView& root) {
 }
 
 void check_lights(const JsonView& root) {
-  if (const auto lights = extension(root, "KHR_lights_punctual"))
-    for_each_object(*lights, "lights", [](const JsonView&, std::size_t) {});
+  for (const std::string_view name : kLightExtensions)
+    if (const auto lights = extension(root, name))
+      for_each_object(*lights, "lights", [](const JsonView&, std::size_t) {});
 }
 
 }  // namespace relook

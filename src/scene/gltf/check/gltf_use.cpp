@@ -79,6 +79,7 @@ class Reach {
   explicit Reach(const Json& gltf) : gltf_(gltf) {
     for (const auto& [section, used] : sections()) used->resize(gltf_array(gltf, section).size());
     use_.cameras.resize(array_or_empty(gltf, "cameras").size());
+    use_.area_lights.resize(gltf_area_lights(gltf).size());
     use_.skinned_meshes.resize(use_.meshes.size());
     uv_sets_ = uv_sets(gltf_array(gltf, Section::materials));
     for (const std::size_t node : active_nodes(gltf)) add_node(node);
@@ -88,7 +89,9 @@ class Reach {
     const std::size_t scene = gltf.value("scene", std::size_t{0});
     const Json& relook =
         scene < scenes.size() ? object_in(object_in(scenes[scene], "extras"), "relook") : array_or_empty(gltf, "");
-    mark_named(object_in(relook, "environment"), "image", gltf_array(gltf, Section::images), use_.images);
+    const Json& environment = object_in(relook, "environment");
+    for (const Json* owner : {&environment, &object_in(environment, "background")})
+      mark_named(*owner, "image", gltf_array(gltf, Section::images), use_.images);
   }
   GltfUse take() { return std::move(use_); }
 
@@ -107,6 +110,7 @@ class Reach {
     if (mesh != SIZE_MAX && mark(node, "skin", use_.skins) != SIZE_MAX) use_.skinned_meshes[mesh] = true;
     (void)mark(node, "camera", use_.cameras);
     (void)mark(object_in(object_in(node, "extensions"), "KHR_lights_punctual"), "light", use_.lights);
+    (void)mark(object_in(object_in(node, "extensions"), "EXT_lights_area"), "light", use_.area_lights);
     const Json& relook = object_in(object_in(node, "extras"), "relook");
     mark_named(object_in(relook, "displacement"), "texture", gltf_array(gltf_, Section::textures), use_.textures);
   }
@@ -203,6 +207,10 @@ GltfUse gltf_use(const Json& gltf) { return Reach(gltf).take(); }
 const Json& gltf_array(const Json& gltf, Section section) {
   if (section != Section::lights) return array_or_empty(gltf, section_name(section));
   return array_or_empty(object_in(object_in(gltf, "extensions"), "KHR_lights_punctual"), "lights");
+}
+
+const Json& gltf_area_lights(const Json& gltf) {
+  return array_or_empty(object_in(object_in(gltf, "extensions"), "EXT_lights_area"), "lights");
 }
 
 }  // namespace relook

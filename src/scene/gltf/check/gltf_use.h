@@ -19,6 +19,7 @@ struct GltfUse {
     bool is_lit = false;       // by one of them
   };
   std::vector<std::vector<Primitive>> primitives;  // by mesh
+  std::vector<bool> area_lights;                   // of EXT_lights_area; `lights`: of KHR_lights_punctual
 
   [[nodiscard]] const std::vector<bool>& of(Section section) const;
   /// Whether a column of a primitive, or of its morph targets, counts for the picture; tangents can be derived.
@@ -28,7 +29,9 @@ struct GltfUse {
 /// Requires: every index in `gltf` is in range and its nodes are trees. Other values may be wrong.
 [[nodiscard]] GltfUse gltf_use(const Json& gltf);
 
-/// glTF's array behind a section or the cameras; an empty one where there is none.
+/// glTF's array behind a section or the cameras; an empty one where there is none. Of lights that of
+/// KHR_lights_punctual; the other is that of EXT_lights_area.
 [[nodiscard]] const Json& gltf_array(const Json& gltf, Section section);
+[[nodiscard]] const Json& gltf_area_lights(const Json& gltf);
 
 }  // namespace relook

@@ -134,8 +134,9 @@ class ValueCheck {
   std::vector<std::string>& warnings_;
 };
 
-Json* lights_of(Json& gltf) {
-  const Json::json_pointer place("/extensions/KHR_lights_punctual/lights");
+/// The array at a pointer, if there is one.
+Json* array_at(Json& gltf, const std::string& pointer) {
+  const Json::json_pointer place(pointer);
   return gltf.contains(place) ? &gltf[place] : nullptr;
 }
 
@@ -240,19 +241,37 @@ void check_camera(Json& camera, const std::string& pointer, bool is_used, std::s
   tolerate(file, pointer, fault + "; the scene does not use it: ignored", warnings);
 }
 
+/// The lights of EXT_lights_area, from which a cone is dropped that only another kind has.
+void check_area_lights(Json& gltf, const GltfUse& use, std::string_view file, std::vector<std::string>& warnings) {
+  const std::string place = "/extensions/EXT_lights_area/lights";
+  Json* const lights = array_at(gltf, place);
+  if (lights == nullptr) return;
+  for (std::size_t i = 0; i < lights->size(); ++i) {
+    const std::string pointer = place + "/" + std::to_string(i);
+    for (const char* foreign : {"spot", "range"}) (*lights)[i].erase(foreign);
+    (void)ValueCheck(use.area_lights[i], file, warnings).object(area_light_schema(), (*lights)[i], {nullptr, pointer});
+  }
+}
+
 void check_section(Json& gltf, Section section, const GltfUse& use, std::string_view file,
                    std::vector<std::string>& warnings) {
-  Json* const things = section == Section::lights ? lights_of(gltf) : find_array(gltf, section_name(section));
+  const std::string place = section == Section::lights ? "/extensions/KHR_lights_punctual/lights"
+                                                       : "/" + std::string(section_name(section));
+  Json* const things =
+      section == Section::lights ? array_at(gltf, place) : find_array(gltf, section_name(section));
   if (things == nullptr) return;
-  const std::string prefix = section == Section::lights ? "/extensions/KHR_lights_punctual/lights/"
-                                                        : "/" + std::string(section_name(section)) + "/";
+  const std::string prefix = place + "/";
   for (std::size_t i = 0; i < things->size(); ++i) {
     const std::string pointer = prefix + std::to_string(i);
     Json& thing = (*things)[i];
     const bool is_used = use.of(section)[i];
     if (section == Section::materials) split_emission(thing, pointer, file, warnings);
-    const Schema& schema = section == Section::materials ? file_material_schema() : schema_of(section);
+    const Schema& schema = section == Section::materials ? file_material_schema()
+                           : section == Section::lights  ? punctual_light_schema()
+                                                         : schema_of(section);
     if (section == Section::lights) check_idle_cone(thing, pointer, file, warnings);
+    if (section == Section::lights)
+      for (const char* foreign : {"size", "rect"}) thing.erase(foreign);
     (void)ValueCheck(is_used, file, warnings).object(schema, thing, {nullptr, pointer});
     if (section == Section::nodes && is_used) check_transform(thing, pointer, file);
     if (section == Section::lights) fit_cone(thing, pointer, is_used, file, warnings);
@@ -263,6 +282,7 @@ void check_section(Json& gltf, Section section, const GltfUse& use, std::string_
 
 void check_gltf_values(Json& gltf, const GltfUse& use, std::string_view file, std::vector<std::string>& warnings) {
   for (std::size_t s = 0; s < kSectionCount; ++s) check_section(gltf, static_cast<Section>(s), use, file, warnings);
+  check_area_lights(gltf, use, file, warnings);
   if (Json* const cameras = find_array(gltf, "cameras"))
     for (std::size_t i = 0; i < cameras->size(); ++i)
       check_camera((*cameras)[i], "/cameras/" + std::to_string(i), use.cameras[i], file, warnings);

@@ -1,0 +1,31 @@
+// From ray trees to terms of light (PATH.md): every hit brings a term of unit-light transport for each light that reaches
+// it, each ray one for what it meets or crosses on its way. Trees in; sums of a tile out, to which their terms are added,
+// or from which they are taken. Called by render and preprocess (image/), and by replay/ for samples that an edit reaches.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "color/path/path_programs.h"
+#include "color/path/sum_places.h"
+#include "frame/sums/tile_sums.h"
+
+namespace relook {
+
+enum class TermSign : std::uint8_t { add, subtract };
+
+/// Keeps its working memory between calls; one per thread. All must outlive it.
+class PathShader {
+ public:
+  PathShader(const ColorScene& scene, PathPrograms& programs, const SumPlaces& places);
+  ~PathShader();
+  /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel. `wanted`: by sum,
+  /// which of them are asked for; empty: all.
+  void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums,
+             std::span<const std::uint8_t> wanted = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace relook

@@ -1,0 +1,20 @@
+// Where in a frame's sums of light the terms of a path go: the places of light_sums() by what they are of.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scene/light_sums.h"
+
+namespace relook {
+
+struct SumPlaces {
+  /// `sums`: light_sums() of the scene.
+  SumPlaces(const Scene& scene, std::span<const LightSum> sums);
+
+  std::vector<std::uint32_t> of_light;               // by place in the light order
+  std::uint32_t sky = 0, ambient = 0, background = 0, unlit = 0;
+  std::size_t count = 0;
+};
+
+}  // namespace relook

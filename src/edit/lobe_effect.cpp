@@ -1,0 +1,92 @@
+#include "edit/lobe_effect.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/surface_optics.h"
+
+namespace relook {
+namespace {
+
+/// First and last bucket of what a surface may have.
+struct Buckets {
+  int first = 0, last = 0;
+  [[nodiscard]] bool is_one() const { return first == last; }
+  bool operator==(const Buckets&) const = default;
+};
+
+/// Lookups mix texels, and may miss their extremes by rounding.
+constexpr float kRounding = 1e-5F;
+std::pair<float, float> scaled(float factor, float smallest, float largest) {
+  const float below = smallest == largest && smallest == 1 ? 1 : 1 - kRounding;
+  const float above = smallest == largest && smallest == 1 ? 1 : 1 + kRounding;
+  return {factor * smallest * below, factor * largest * above};
+}
+
+/// Of alpha: [2^k, 2^(k+1)) is bucket k.
+int alpha_bucket(float roughness) {
+  constexpr float kSmoothest = 0.05F;
+  const float clamped = std::clamp(roughness, kSmoothest, 1.0F);
+  return std::ilogb(clamped * clamped);
+}
+Buckets alpha_buckets(float factor, float smallest, float largest) {
+  const auto [low, high] = scaled(factor, smallest, largest);
+  return {alpha_bucket(low), alpha_bucket(high)};
+}
+
+int metal_bucket(float metallic) { return metallic < 1.0F / 64 ? 0 : metallic > 63.0F / 64 ? 2 : 1; }
+Buckets metal_buckets(const Material& m) {
+  const auto [smallest, largest] = texture_range(m.slot(Slot::metallic_roughness));
+  const auto [low, high] = scaled(m.metallic, smallest.b, largest.b);
+  return {metal_bucket(low), metal_bucket(high)};
+}
+Buckets roughness_buckets(const Material& m) {
+  const auto [smallest, largest] = texture_range(m.slot(Slot::metallic_roughness));
+  return alpha_buckets(m.roughness, smallest.g, largest.g);
+}
+Buckets coat_buckets(const Material& m) {
+  const auto [smallest, largest] = texture_range(m.slot(Slot::clearcoat_roughness));
+  return alpha_buckets(m.clearcoat_roughness, smallest.g, largest.g);
+}
+
+bool is_black(const Color& color) { return color == Color(0, 0, 0); }
+
+/// Could hits get another bucket? Not if both have one and the same, nor if nothing that decides it differs.
+bool differs(Buckets before, Buckets after, bool is_same_input) {
+  return !is_same_input && !(before.is_one() && before == after);
+}
+
+/// The same lobes on both? Factors decide, never a texel.
+bool has_same_lobes(const Material& a, const Material& b) {
+  const auto agree = [](auto x, auto y) { return (x == 0) == (y == 0); };
+  return agree(a.clearcoat, b.clearcoat) && agree(a.specular, b.specular) && agree(a.transmission, b.transmission) &&
+         agree(a.iridescence, b.iridescence) && is_black(a.specular_color) == is_black(b.specular_color) &&
+         is_black(a.sheen_color) == is_black(b.sheen_color);
+}
+
+}  // namespace
+
+bool turns_lobes(const Material& before, const Material& after, std::span<const MaterialRow> rows) {
+  if (before.model != after.model) return true;
+  if (after.model == IlluminationModel::unlit) return false;
+  if (relook::differs(MaterialRow::bends, before, after, rows)) return true;
+  if (after.model == IlluminationModel::blinn_phong)
+    return before.shininess != after.shininess || before.reflection != after.reflection ||
+           before.refraction != after.refraction || before.transparency != after.transparency ||
+           is_black(before.phong_diffuse) != is_black(after.phong_diffuse) ||
+           is_black(before.phong_specular) != is_black(after.phong_specular);
+  if (!has_same_lobes(before, after) || before.ior != after.ior) return true;
+  const bool same_texture = before.slot(Slot::metallic_roughness) == after.slot(Slot::metallic_roughness);
+  if (differs(metal_buckets(before), metal_buckets(after), same_texture && before.metallic == after.metallic))
+    return true;
+  if (differs(roughness_buckets(before), roughness_buckets(after),
+              same_texture && before.roughness == after.roughness))
+    return true;
+  if (after.clearcoat == 0) return false;
+  const bool same_coat = before.slot(Slot::clearcoat_roughness) == after.slot(Slot::clearcoat_roughness) &&
+                         before.clearcoat_roughness == after.clearcoat_roughness;
+  return relook::differs(MaterialRow::bends_coat, before, after, rows) ||
+         differs(coat_buckets(before), coat_buckets(after), same_coat);
+}
+
+}  // namespace relook
