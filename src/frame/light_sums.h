@@ -13,6 +13,9 @@
 
 namespace relook {
 
+/// Sums beside those of the lights: sky, ambient light, background, unlit surfaces.
+inline constexpr std::size_t kSumsBesideLights = 4;
+
 /// Colour times intensity of a light, linear RGB.
 using LightColor = std::array<double, 3>;
 

@@ -96,11 +96,13 @@ struct Replayer::Impl {
     counters.pixels_changed = result.changed_pixels.size();
     const PieceCounts moves = parts.residency.take_counts();
     const auto of = [](const auto& counts, PieceKind kind) { return counts[static_cast<std::size_t>(kind)]; };
-    counters.evicted += {of(moves.evicted, PieceKind::ray_trees), of(moves.evicted, PieceKind::sample_colors),
-                         moves.others_evicted, of(moves.evicted, PieceKind::tunnels), moves.evicted_bytes};
+    counters.evicted += {of(moves.evicted, PieceKind::ray_trees),  of(moves.evicted, PieceKind::sample_colors),
+                         of(moves.evicted, PieceKind::light_sums), moves.others_evicted,
+                         of(moves.evicted, PieceKind::tunnels),    moves.evicted_bytes};
     counters.tunnels_read += of(moves.fetched, PieceKind::tunnels);
-    counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees), of(moves.reloaded, PieceKind::sample_colors), 0,
-                          of(moves.reloaded, PieceKind::tunnels), moves.reloaded_bytes};
+    counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees),  of(moves.reloaded, PieceKind::sample_colors),
+                          of(moves.reloaded, PieceKind::light_sums), 0,
+                          of(moves.reloaded, PieceKind::tunnels),    moves.reloaded_bytes};
     counters.rebuilt += parts.stored.take_rebuilt();
     if (counters.ray_tests + counters.ray_tests_culled > 0) return;
     counters.ray_tests_culled = counters.culled.by_class = parts.stored.segments();  // no pass looked at any

@@ -36,6 +36,7 @@ Json resident_json(const Resident& resident) {
   return {{"ray_paths", resident.ray_paths},
           {"ray_trees", resident.ray_trees},
           {"sample_colors", resident.sample_colors},
+          {"light_sums", resident.light_sums},
           {"color_trees", resident.color_trees},
           {"groups", resident.groups},
           {"tunnels", resident.tunnels},
@@ -43,11 +44,9 @@ Json resident_json(const Resident& resident) {
 }
 
 Json moves_json(const Moves& moves) {
-  return {{"ray_trees", moves.ray_trees},
-          {"sample_colors", moves.sample_colors},
-          {"color_trees", moves.color_trees},
-          {"tunnels", moves.tunnels},
-          {"total", moves.bytes}};
+  return {{"ray_trees", moves.ray_trees},   {"sample_colors", moves.sample_colors},
+          {"light_sums", moves.light_sums}, {"color_trees", moves.color_trees},
+          {"tunnels", moves.tunnels},       {"total", moves.bytes}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
