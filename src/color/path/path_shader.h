@@ -7,7 +7,7 @@
 
 #include "color/path/path_programs.h"
 #include "color/path/sum_places.h"
-#include "frame/sums/tile_sums.h"
+#include "light/sums/tile_sums.h"
 
 namespace relook {
 
