@@ -93,7 +93,8 @@ namespace {
 /// Compiles the look document of `content`, which is moved from.
 CacheAnswer compile(CacheContent& content, std::unique_ptr<SceneState>& state) {
   try {
-    state = std::make_unique<SceneState>(std::move(content.document), content.camera, content.pyramids);
+    state = std::make_unique<SceneState>(std::move(content.document), content.camera, content.pyramids,
+                                         content.image.view.integrator);
   } catch (const InputError& error) {
     return {CacheFault::damaged, "look.json", error.what()};
   }
@@ -138,6 +139,7 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   CacheContent scene_part;
   scene_part.document = content.document;
   scene_part.camera = content.camera;
+  scene_part.image.view = content.image.view;
   scene_part.pyramids = content.pyramids;
   scene_part.objects = content.objects;
   scene_part.lights = content.lights;
