@@ -8,8 +8,8 @@
 #include <span>
 
 #include "base/math.h"
-#include "frame/sums/packed_sums.h"
-#include "frame/sums/tile_sums.h"
+#include "light/sums/packed_sums.h"
+#include "light/sums/tile_sums.h"
 
 namespace relook {
 

@@ -143,6 +143,7 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   scene_part.pyramids = content.pyramids;
   scene_part.objects = content.objects;
   scene_part.lights = content.lights;
+  scene_part.image.view = content.image.view;
   std::unique_ptr<SceneState> state;
   CacheAnswer answer = compile(scene_part, state);
   if (answer.fault != CacheFault::none) return answer;

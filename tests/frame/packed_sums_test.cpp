@@ -1,5 +1,5 @@
 // Packed sums hold what unpacked ones do, in no more bytes than they need; pixels follow from either.
-#include "frame/sums/packed_sums.h"
+#include "light/sums/packed_sums.h"
 
 #include <gtest/gtest.h>
 

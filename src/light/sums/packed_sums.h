@@ -1,4 +1,4 @@
-// The sums of light of one tile (frame/sums/tile_sums.h) in as few bytes as they need: what is kept in memory between
+// The sums of light of one tile (light/sums/tile_sums.h) in as few bytes as they need: what is kept in memory between
 // changes, and on disk. All values of a sum are stored in the same number of bytes, without the low zero bytes that
 // they have in common; a sum without light takes none. Equal sums have equal bytes.
 #pragma once
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/files.h"
-#include "frame/sums/tile_sums.h"
+#include "light/sums/tile_sums.h"
 
 namespace relook {
 

@@ -1,4 +1,4 @@
-#include "frame/sums/packed_sums.h"
+#include "light/sums/packed_sums.h"
 
 #include <algorithm>
 #include <bit>
