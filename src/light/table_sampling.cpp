@@ -71,9 +71,8 @@ GridDistribution::Choice GridDistribution::choose(double number_row, double numb
 }
 
 double sample_linear(double a, double b, double number) {
-  if (!(a + b > 0)) return number;
-  const double root = std::sqrt(a * a + (b * b - a * a) * number);
-  return std::clamp(number * (a + b) / (a + root), 0.0, kBelowOne);
+  const double below = a + std::sqrt(a * a + (b * b - a * a) * number);
+  return below > 0 ? std::clamp(number * (a + b) / below, 0.0, kBelowOne) : 0.0;
 }
 
 }  // namespace relook

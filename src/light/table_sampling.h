@@ -67,7 +67,8 @@ class GridDistribution {
   DiscreteDistribution rows_;  // over `row_tables_`
 };
 
-/// The place in [0, 1] whose density is a (1 - x) + b x over its mean. Requires a, b >= 0 and a + b > 0.
+/// The place in [0, 1] whose density is a (1 - x) + b x over its mean. Requires a, b >= 0; 0 where
+/// both are.
 [[nodiscard]] double sample_linear(double a, double b, double number);
 
 }  // namespace relook
