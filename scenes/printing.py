@@ -89,7 +89,7 @@ def _label():
     gold.line(250, 278, 518, 278, 1.8)
     ink.text("EAU DE LUMIERE", 384, 328, 34, 2.5, 3.0)
     ink.text("NO. 26", 384, 92, 28, 2.2, 3.2)
-    ink.text("50 ML - 1.7 FL. OZ.", 384, 424, 22, 1.7, 2.6)
+    ink.text("15 ML - 0.5 FL. OZ.", 384, 424, 22, 1.7, 2.6)
     return ink, gold
 
 

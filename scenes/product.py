@@ -11,9 +11,10 @@ import still_life
 import watch
 from gltf import Gltf, look_at, rounded
 
-EYE, TARGET, YFOV_DEGREES = (0.004, 0.112, 0.352), (0.004, 0.0455, 0.0), 20.1  # 35 degrees across at 16:9
+EYE, TARGET, YFOV_DEGREES = (0.005, 0.099, 0.302), (0.005, 0.0405, 0.0), 20.1  # 35 degrees across at 16:9
 WATCH_TILT, WATCH_YAW = math.radians(54.0), math.radians(16.0)
-CLOTH_HEIGHT = 0.0088
+CLOTH_HEIGHT = 0.0086
+WATCH_UNIT, BOTTLE_UNIT = 0.00108, 0.00086  # metres for a millimetre of their drawings: a case of 43 mm, 15 ml
 
 
 def _textures(gltf, folder):
@@ -109,24 +110,24 @@ def write(folder):
     textures = _textures(gltf, folder)
     materials = {**_metals(gltf, textures), **_plastics(gltf, textures), **_glasses(gltf), **_cloths(gltf, textures)}
 
-    def add(name, material, shape, parent=None, **node):
-        shape = solids.scaled(shape, 0.001)
+    def add(name, material, shape, parent=None, unit=0.001, **node):
+        shape = solids.scaled(shape, unit)
         if not _needs_tangents(gltf.document["materials"][materials[material]]):
             shape.tangents = []
         geometry = gltf.add_geometry(shape, 7)
         return gltf.add_node(name, parent, mesh=gltf.add_mesh(name, (geometry, materials[material])), **node)
 
     add("Sweep", "Sweep", still_life.sweep())
-    add("Cloth", "Cloth", still_life.cloth(), translation=[-0.037, 0.0, 0.012], rotation=_facing(0.2, 0.0))
-    lift = CLOTH_HEIGHT - watch.lowest(WATCH_TILT) / 1000
-    timepiece = gltf.add_node("Watch", translation=rounded([-0.039, lift, 0.010]), rotation=_facing(WATCH_YAW, WATCH_TILT))
+    add("Cloth", "Cloth", still_life.cloth(), translation=[-0.027, 0.0, 0.022], rotation=_facing(0.24, 0.0))
+    lift = CLOTH_HEIGHT - watch.lowest(WATCH_TILT) * WATCH_UNIT
+    timepiece = gltf.add_node("Watch", translation=rounded([-0.029, lift, 0.022]), rotation=_facing(WATCH_YAW, WATCH_TILT))
     for name, material, shape in watch.parts():
-        add(name, material, shape, timepiece)
-    add("Plinth", "Plinth", still_life.plinth(), translation=[0.044, 0.0, -0.036])
-    perfume = gltf.add_node("Perfume", translation=[0.044, 0.0121, -0.036], rotation=_facing(-0.22, 0.0))
+        add(name, material, shape, timepiece, WATCH_UNIT)
+    add("Plinth", "Plinth", still_life.plinth(), translation=[0.041, 0.0, -0.036])
+    perfume = gltf.add_node("Perfume", translation=[0.041, 0.0121, -0.036], rotation=_facing(-0.22, 0.0))
     for name, material, shape in still_life.bottle_parts():
-        add(name, material, shape, perfume)
-    add("Ring", "Ring", still_life.ring(), translation=[0.050, 0.0, 0.034])
+        add(name, material, shape, perfume, BOTTLE_UNIT)
+    add("Ring", "Ring", still_life.ring(), translation=[0.048, 0.0, 0.028])
 
     for name, kind, color, nits, size, aspect, eye, target in (
             ("Key", "rect", [1.0, 0.97, 0.92], 8.0, 0.30, 1.2, (-0.36, 0.38, 0.26), (-0.01, 0.04, 0.0)),

@@ -124,7 +124,8 @@ def lathe(profile, columns=96, ripple=None):
                 r += ripple(angle, height)
                 lean = -(ripple(angle + 1e-4, height) - ripple(angle - 1e-4, height)) / 2e-4 / radius * nr
             normal = unit((nr * s + lean * c, ny, nr * c - lean * s))
-            row.append(((r * s, height, r * c), normal, unit(_minus((c, 0.0, -s), _times(normal, lean))), (i / columns, 1 - v)))
+            across = c * normal[0] - s * normal[2]
+            row.append(((r * s, height, r * c), normal, unit(_minus((c, 0.0, -s), _times(normal, across))), (i / columns, 1 - v)))
         rows.append(row)
     return net(rows, True)
 
@@ -201,10 +202,10 @@ def capsule(length, radius, columns=8, steps=3):
         row = []
         for i in range(columns):
             turn = 2 * math.pi * i / columns
-            c, s = math.cos(turn), -math.sin(turn)
+            c, s = math.cos(turn), math.sin(turn)
             across = (math.sin(angle), math.cos(angle) * c, math.cos(angle) * s)
-            row.append(((x + radius * across[0], radius * across[1], radius * across[2]), across, (0.0, s, -c),
-                        (i / columns, (x / length) + 0.5)))
+            row.append(((x + radius * across[0], radius * across[1], radius * across[2]), across, (0.0, -s, c),
+                        (i / columns, 0.5 - x / length)))
         rows.append(row)
     return net(rows, True)
 

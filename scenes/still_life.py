@@ -14,7 +14,7 @@ def bottle_parts():
     """(node, material, shape); y = 0 is what the bottle stands on. One block of glass with a hollow for the air; the
     liquid fills the rest of the hollow, and touches the glass: its index of refraction is relative to it."""
     walls = rectangle(50, 27, 8, 8)
-    glass = slab(walls, rounded_line([(-3.0, 0.0, 0), (0.0, 0.0, 2.5), (0.0, 58.0, 5.5), (-7.4, 63.0, 1.0), (-7.6, 63.0, 0)]))
+    glass = slab(walls, rounded_line([(-3.0, 0.0, 0), (0.0, 0.0, 2.5), (0.0, 58.0, 5.5), (-7.4, 63.0, 1.0), (-7.8, 63.0, 0)]))
     hollow = rectangle(41, 18.5, 4.5, 8)
     glass.add(flipped(slab(hollow, rounded_line([(-1e-3, LEVEL, 0), (0.0, LEVEL, 0), (0.0, 55.0, 3.5), (-3.9, 56.5, 0.5),
                                                  (-4.0, 56.5, 0)]))))
@@ -23,14 +23,14 @@ def bottle_parts():
     label = solids.framed(label, (0, 32.0, 13.53), (1, 0, 0), (0, 0, 1), (0, -1, 0))
     collar = lathe(rounded_line([(9.6, 62.6, 0), (9.6, 64.6, 0.4), (8.2, 64.6, 0.1), (8.2, 66.2, 0)]), 96)
     cap = lathe(rounded_line([(10.0, 65.8, 0), (11.6, 65.8, 0.4), (11.6, 89.0, 1.2), (9.8, 89.0, 0.5), (9.3, 88.4, 0.4),
-                              (0.001, 88.4, 0)]), 128)
-    tube = lathe(rounded_line([(0.001, 11.0, 0), (0.9, 11.0, 0.2), (0.9, 62.9, 0)]), 24)
+                              (0.0, 88.4, 0)]), 128)
+    tube = lathe(rounded_line([(0.0, 11.0, 0), (0.9, 11.0, 0.2), (0.9, 62.9, 0)]), 24)
     return [("Bottle", "Bottle", glass), ("Liquid", "Liquid", liquid), ("Label", "Label", label),
             ("Collar", "Collar", collar), ("Cap", "Cap", cap), ("Tube", "Tube", tube)]
 
 
 def plinth():
-    return lathe(rounded_line([(33.0, 0.0, 0), (34.0, 0.0, 0.8), (34.0, 12.0, 1.4), (0.001, 12.0, 0)], False, 8), 160)
+    return lathe(rounded_line([(29.0, 0.0, 0), (30.0, 0.0, 0.8), (30.0, 12.0, 1.4), (0.0, 12.0, 0)], False, 8), 160)
 
 
 def ring():
@@ -71,7 +71,7 @@ def cloth(repeats=(54, 17)):
     for j in range(count + 1):
         t = 2 * j / count - 1
         edge = max(0.0, abs(t) - 0.97) / 0.03
-        z = -34.0 * (math.copysign(1 - (1 - abs(t)) ** 1.3, t))
+        z = 34.0 * (math.copysign(1 - (1 - abs(t)) ** 1.3, t))
         row = []
         for x, y in _layers(0.62 * math.sqrt(max(1 - edge * edge, 0.003))):
             wave = images.noise(x / 19 + 40, z / 15 + 40, 997) - 0.5

@@ -14,7 +14,7 @@ LOOP_ACROSS, LOOP_DEEP, LOOP_CENTER = 29.0, 25.5, -24.0  # half axes of the stra
 
 
 def _case():
-    body = lathe(rounded_line([(0.001, -6.3, 0), (14.5, -6.3, 0.4), (15.2, -5.6, 0.4), (18.2, -5.2, 1.0),
+    body = lathe(rounded_line([(0.0, -6.3, 0), (14.5, -6.3, 0.4), (15.2, -5.6, 0.4), (18.2, -5.2, 1.0),
                                (20.0, -3.4, 0.5), (20.0, 1.7, 0.7), (19.1, 2.6, 0.3), (16.2, 2.6, 0.1),
                                (15.3, DIAL_HEIGHT - 0.1, 0)]), 160)
     side = rounded_line([(11.0, -4.6, 0.8), (19.5, -5.6, 2.0), (23.6, -9.0, 0.7), (25.0, -8.2, 1.0), (23.4, -3.2, 6.0),
@@ -31,7 +31,7 @@ def _bezel():
         return 0.11 * math.cos(90 * angle) if 2.9 < height < 4.3 else 0.0
     return lathe(rounded_line([(18.0, 2.7, 0), (20.1, 2.7, 0.25), (20.5, 3.1, 0.2), (20.5, 4.0, 0.3), (19.35, 5.0, 0.2),
                                (19.2, 4.6, 0), (16.7, 5.0, 0), (16.65, 5.45, 0.15), (16.35, 5.45, 0.12), (16.3, 3.2, 0)]),
-                 720, coin_edge)
+                 540, coin_edge)
 
 
 def _insert():
@@ -43,7 +43,7 @@ def _insert():
 
 def _crystal():
     dome = [(r, 5.35 + 0.95 * (1 - (r / 16.15) ** 2), 6.0) for r in (12.9, 9.7, 6.4, 3.2)]
-    return lathe(rounded_line([(0.001, 3.7, 0), (16.15, 3.7, 0.1), (16.15, 5.45, 0.3)] + dome + [(0.001, 6.3, 0)]), 128)
+    return lathe(rounded_line([(0.0, 3.7, 0), (16.15, 3.7, 0.1), (16.15, 5.45, 0.3)] + dome + [(0.0, 6.3, 0)]), 128)
 
 
 def _dial():
@@ -94,7 +94,7 @@ def _crown():
     def knurl(angle, height):
         return 0.13 * math.cos(30 * angle) if 0.5 < height < 3.2 else 0.0
     crown = lathe(rounded_line([(1.4, -1.0, 0), (1.4, 0.2, 0.1), (2.9, 0.2, 0.25), (3.15, 0.8, 0.3), (3.15, 3.1, 0.3),
-                                (2.8, 3.7, 0.3), (0.001, 3.9, 0)]), 240, knurl)
+                                (2.8, 3.7, 0.3), (0.0, 3.9, 0)]), 240, knurl)
     return framed(crown, (20.2, -0.6, 0), (0, 0, 1), (1, 0, 0), (0, 1, 0))
 
 
@@ -107,7 +107,7 @@ def _loop(angle, out=0.0):
     return place, solids.cross(up, along), up
 
 
-STRAP_START = math.asin(21.4 / LOOP_ACROSS)
+STRAP_START = math.asin(19.2 / LOOP_ACROSS)
 
 
 def _strap_size(angle):
@@ -137,7 +137,7 @@ def _strap():
 def _stitches():
     """Two rows of thread on the outer side, as far as they can be seen."""
     thread, stitches = solids.capsule(2.1, 0.33), Shape()
-    for start, end in ((STRAP_START + 0.10, 2.9), (2 * math.pi - STRAP_START - 0.10, 3.4)):
+    for start, end in ((STRAP_START + 0.24, 2.9), (2 * math.pi - STRAP_START - 0.24, 3.4)):
         angle, step = start, math.copysign(1.0, end - start)
         while (end - angle) * step > 0:
             width, thick = _strap_size(angle)
@@ -157,7 +157,7 @@ def _cushion():
         a, b = (LOOP_ACROSS - 2.0) * math.cos(angle), (LOOP_DEEP - 2.0) * math.sin(angle)
         na, nb = math.cos(angle) / LOOP_ACROSS, math.sin(angle) / LOOP_DEEP
         length = math.hypot(na, nb)
-        outline.append((a, LOOP_CENTER + min(b, 16.6), na / length, nb / length))
+        outline.append((a, LOOP_CENTER + min(b, 14.0), na / length, nb / length))
     roll = slab(outline, bevelled(-14.0, 14.0, 6.0, 6.0, 10))
     return framed(roll, (0, 0, 0), (0, 0, -1), (1, 0, 0), (0, -1, 0))
 
