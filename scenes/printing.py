@@ -155,7 +155,8 @@ def write(folder):
     metal, print_ = (255, 84, 255), (255, 130, 0)  # occlusion, roughness, metallic
     images.write_rows(path("dial-surface.png"), DIAL, DIAL, _mixed(_plain(metal), [(ink, print_), (accent, print_)]))
     scale = _scale()
-    images.write_rows(path("scale.png"), scale.width, scale.height, _mixed(_plain((9, 12, 18)), [(scale, (225, 224, 214))]))
+    images.write_rows(path("scale.png"), scale.width, scale.height,
+                      _mixed(_plain((9, 12, 18)), [(scale, (225, 224, 214))]))
     ink, gold = _label()
     images.write_rows(path("label.png"), ink.width, ink.height,
                       _mixed(_plain((238, 231, 214)), [(gold, (226, 170, 82)), (ink, (38, 34, 32))]))

@@ -11,7 +11,7 @@ import still_life
 import watch
 from gltf import Gltf, look_at, rounded
 
-EYE, TARGET, YFOV_DEGREES = (0.005, 0.099, 0.302), (0.005, 0.0405, 0.0), 20.1  # 35 degrees across at 16:9
+EYE, TARGET, YFOV_DEGREES = (0.003, 0.099, 0.316), (0.003, 0.038, 0.0), 20.1  # 35 degrees across at 16:9
 WATCH_TILT, WATCH_YAW = math.radians(54.0), math.radians(16.0)
 CLOTH_HEIGHT = 0.0086
 WATCH_UNIT, BOTTLE_UNIT = 0.00108, 0.00086  # metres for a millimetre of their drawings: a case of 43 mm, 15 ml
@@ -78,7 +78,7 @@ def _glasses(gltf):
             "Bottle": gltf.add_material("Bottle", (1.0, 1.0, 1.0), 0.0, 0.0,
                                         extensions=_glass(1.5, 0.005, 0.4, [0.90, 0.97, 0.94])),
             "Liquid": gltf.add_material("Liquid", (1.0, 1.0, 1.0), 0.0, 0.0,
-                                        extensions=_glass(1.0, 0.018, 0.022, [0.93, 0.60, 0.22]))}
+                                        extensions=_glass(1.0, 0.018, 0.022, [0.95, 0.62, 0.26]))}
 
 
 def _cloths(gltf, textures):
@@ -86,12 +86,13 @@ def _cloths(gltf, textures):
         return {"index": textures["Weave"], "scale": scale}
     leather = {"index": textures["Leather"], "scale": 0.55}
     return {"Strap": gltf.add_material("Strap", (0.20, 0.062, 0.022), 0.0, 0.48, normalTexture=leather),
-            "Thread": gltf.add_material("Thread", (0.72, 0.62, 0.45), 0.0, 0.8, extensions=_sheen([0.2, 0.2, 0.2], 0.5)),
-            "Cushion": gltf.add_material("Cushion", (0.035, 0.045, 0.065), 0.0, 0.9,
-                                         extensions=_sheen([0.20, 0.22, 0.26], 0.4)),
-            "Cloth": gltf.add_material("Cloth", (0.46, 0.39, 0.31), 0.0, 0.85, normalTexture=weave(0.7),
-                                       extensions=_sheen([0.30, 0.28, 0.25], 0.4)),
-            "Sweep": gltf.add_material("Sweep", (0.10, 0.17, 0.19), 0.0, 0.6, doubleSided=True)}
+            "Thread": gltf.add_material("Thread", (0.72, 0.62, 0.45), 0.0, 0.8,
+                                        extensions=_sheen([0.2, 0.2, 0.2], 0.5)),
+            "Cushion": gltf.add_material("Cushion", (0.50, 0.44, 0.36), 0.0, 0.9,
+                                         extensions=_sheen([0.20, 0.19, 0.17], 0.4)),
+            "Cloth": gltf.add_material("Cloth", (0.022, 0.075, 0.092), 0.0, 0.85, normalTexture=weave(0.7),
+                                       extensions=_sheen([0.12, 0.20, 0.22], 0.4)),
+            "Sweep": gltf.add_material("Sweep", (0.34, 0.285, 0.235), 0.0, 0.6, doubleSided=True)}
 
 
 def _facing(yaw, tilt):
@@ -120,7 +121,8 @@ def write(folder):
     add("Sweep", "Sweep", still_life.sweep())
     add("Cloth", "Cloth", still_life.cloth(), translation=[-0.027, 0.0, 0.022], rotation=_facing(0.24, 0.0))
     lift = CLOTH_HEIGHT - watch.lowest(WATCH_TILT) * WATCH_UNIT
-    timepiece = gltf.add_node("Watch", translation=rounded([-0.029, lift, 0.022]), rotation=_facing(WATCH_YAW, WATCH_TILT))
+    timepiece = gltf.add_node("Watch", translation=rounded([-0.029, lift, 0.022]),
+                              rotation=_facing(WATCH_YAW, WATCH_TILT))
     for name, material, shape in watch.parts():
         add(name, material, shape, timepiece, WATCH_UNIT)
     add("Plinth", "Plinth", still_life.plinth(), translation=[0.041, 0.0, -0.036])

@@ -1,8 +1,8 @@
 """Solids with bevelled edges for the product shot: lathes, slabs and sweeps whose normals and tangents are exact.
 
 Lines are lists of (x, y, nx, ny), their normals to the right of the way: `rounded_line` makes them from corners with
-radii, flats keep flat normals, so that highlights stay on the bevels. Lengths are millimetres; a scene that is in metres
-scales what it packs. Tangents are those of glTF, along rising u, with w = 1.
+radii; flats keep flat normals, so that highlights stay on the bevels. Lengths are millimetres; a scene in metres scales
+what it packs. Tangents are those of glTF, along rising u, with w = 1.
 """
 
 import math
@@ -125,7 +125,8 @@ def lathe(profile, columns=96, ripple=None):
                 lean = -(ripple(angle + 1e-4, height) - ripple(angle - 1e-4, height)) / 2e-4 / radius * nr
             normal = unit((nr * s + lean * c, ny, nr * c - lean * s))
             across = c * normal[0] - s * normal[2]
-            row.append(((r * s, height, r * c), normal, unit(_minus((c, 0.0, -s), _times(normal, across))), (i / columns, 1 - v)))
+            tangent = unit(_minus((c, 0.0, -s), _times(normal, across)))
+            row.append(((r * s, height, r * c), normal, tangent, (i / columns, 1 - v)))
         rows.append(row)
     return net(rows, True)
 
@@ -158,7 +159,8 @@ def slab(outline, profile):
     for (offset, height, no, ny), v in zip(profile, _heights(profile)):
         row = []
         for (a, b, na, nb), u in zip(outline, around):
-            row.append(((a + na * offset, height, -(b + nb * offset)), (na * no, ny, -nb * no), (-nb, 0.0, -na), (u, 1 - v)))
+            row.append(((a + na * offset, height, -(b + nb * offset)), (na * no, ny, -nb * no), (-nb, 0.0, -na),
+                        (u, 1 - v)))
         rows.append(row)
     shape = net(rows, True)
     for end, up in ((profile[0], -1.0), (profile[-1], 1.0)):
@@ -168,12 +170,13 @@ def slab(outline, profile):
 
 def bevelled(low, high, bottom, top, steps=4):
     """The profile of a slab with rounded edges; radii of the lower and of the upper one."""
-    return rounded_line([(-bottom - 1e-3, low, 0), (0, low, bottom), (0, high, top), (-top - 1e-3, high, 0)], False, steps)
+    corners = [(-bottom - 1e-3, low, 0), (0, low, bottom), (0, high, top), (-top - 1e-3, high, 0)]
+    return rounded_line(corners, False, steps)
 
 
 def sweep(frames, sections, repeats, closed=True):
-    """Moves a line along a path: `frames` of (place, side, up), sections[k] in (side, up); the way goes along side x up.
-    `repeats`: how often the texture repeats around and along."""
+    """Moves a line along a path: `frames` of (place, side, up), sections[k] in (side, up); the way
+    goes along side x up. `repeats`: how often the texture repeats around and along."""
     ways = [0.0]
     for a, b in zip(frames, frames[1:]):
         ways.append(ways[-1] + math.dist(a[0], b[0]))

@@ -14,11 +14,14 @@ def bottle_parts():
     """(node, material, shape); y = 0 is what the bottle stands on. One block of glass with a hollow for the air; the
     liquid fills the rest of the hollow, and touches the glass: its index of refraction is relative to it."""
     walls = rectangle(50, 27, 8, 8)
-    glass = slab(walls, rounded_line([(-3.0, 0.0, 0), (0.0, 0.0, 2.5), (0.0, 58.0, 5.5), (-7.4, 63.0, 1.0), (-7.8, 63.0, 0)]))
+    glass = slab(walls, rounded_line([(-3.0, 0.0, 0), (0.0, 0.0, 2.5), (0.0, 58.0, 5.5), (-7.4, 63.0, 1.0),
+                                      (-7.8, 63.0, 0)]))
     hollow = rectangle(41, 18.5, 4.5, 8)
-    glass.add(flipped(slab(hollow, rounded_line([(-1e-3, LEVEL, 0), (0.0, LEVEL, 0), (0.0, 55.0, 3.5), (-3.9, 56.5, 0.5),
-                                                 (-4.0, 56.5, 0)]))))
-    liquid = slab(hollow, rounded_line([(-3.6, 9.0, 0), (0.0, 9.0, 3.5), (0.0, LEVEL - 0.02, 0), (-1e-3, LEVEL - 0.02, 0)]))
+    air = slab(hollow, rounded_line([(-1e-3, LEVEL, 0), (0.0, LEVEL, 0), (0.0, 55.0, 3.5), (-3.9, 56.5, 0.5),
+                                     (-4.0, 56.5, 0)]))
+    glass.add(flipped(air))
+    top = LEVEL - 0.02
+    liquid = slab(hollow, rounded_line([(-3.6, 9.0, 0), (0.0, 9.0, 3.5), (0.0, top, 0), (-1e-3, top, 0)]))
     label = slab(rectangle(33, 22, 0.8, 3), bevelled(0.0, 0.12, 0.0, 0.05, 2))
     label = solids.framed(label, (0, 32.0, 13.53), (1, 0, 0), (0, 0, 1), (0, -1, 0))
     collar = lathe(rounded_line([(9.6, 62.6, 0), (9.6, 64.6, 0.4), (8.2, 64.6, 0.1), (8.2, 66.2, 0)]), 96)
@@ -35,8 +38,8 @@ def plinth():
 
 def ring():
     """A bangle that lies on y = 0."""
-    return lathe(rounded_line([(10.5, 0.0, 2.6), (16.0, 0.0, 2.6), (16.0, 7.5, 2.7), (10.5, 7.5, 2.7)], True, 10) +
-                 rounded_line([(10.5, 0.0, 2.6), (16.0, 0.0, 2.6), (16.0, 7.5, 2.7), (10.5, 7.5, 2.7)], True, 10)[:1], 128)
+    section = rounded_line([(10.5, 0.0, 2.6), (16.0, 0.0, 2.6), (16.0, 7.5, 2.7), (10.5, 7.5, 2.7)], True, 10)
+    return lathe(section + section[:1], 128)
 
 
 def sweep():
@@ -51,7 +54,8 @@ def sweep():
 
 def _layers(half):
     """The cloth's section, three layers `half` thick on each side: one line along both its faces."""
-    corners = [(-47.0, 0.8, 0), (46.0, 0.8, 1.75), (46.0, 4.3, 1.75), (-43.0, 4.3, 1.75), (-43.0, 7.8, 1.75), (37.0, 7.8, 0)]
+    corners = [(-47.0, 0.8, 0), (46.0, 0.8, 1.75), (46.0, 4.3, 1.75), (-43.0, 4.3, 1.75), (-43.0, 7.8, 1.75),
+               (37.0, 7.8, 0)]
     rounded = rounded_line(corners, False, 8)
     line = []
     for p, q in zip(rounded, rounded[1:]):
@@ -78,7 +82,8 @@ def cloth(repeats=(54, 17)):
             part = images.noise(x / 31 + 20, z / 23 + y / 5 + 60, 991)
             lift = y / 8.0
             row.append((x + 1.8 * math.sin(z / 16 + y * 0.4) * lift + 0.05 * z * lift,
-                        y * (1 + 0.28 * wave) + 1.1 * part * lift, z + 1.6 * math.sin(x / 21 + y * 0.7) + 0.06 * x * lift))
+                        y * (1 + 0.28 * wave) + 1.1 * part * lift,
+                        z + 1.6 * math.sin(x / 21 + y * 0.7) + 0.06 * x * lift))
         rows.append(row)
     shape = Shape()
     width = len(rows[0]) + 1

@@ -1,4 +1,4 @@
-"""The wrist watch of the product shot. Lengths in millimetres; +y is where the dial looks, -z is 12 o'clock, +x 3 o'clock.
+"""The wrist watch of the product shot. Lengths in millimetres; the dial looks along +y, -z is 12 o'clock, +x 3 o'clock.
 
 `parts()` says which shape belongs to which node and material; the strap is closed round a cushion that lies behind it.
 """
@@ -30,7 +30,8 @@ def _bezel():
     def coin_edge(angle, height):
         return 0.11 * math.cos(90 * angle) if 2.9 < height < 4.3 else 0.0
     return lathe(rounded_line([(18.0, 2.7, 0), (20.1, 2.7, 0.25), (20.5, 3.1, 0.2), (20.5, 4.0, 0.3), (19.35, 5.0, 0.2),
-                               (19.2, 4.6, 0), (16.7, 5.0, 0), (16.65, 5.45, 0.15), (16.35, 5.45, 0.12), (16.3, 3.2, 0)]),
+                               (19.2, 4.6, 0), (16.7, 5.0, 0), (16.65, 5.45, 0.15), (16.35, 5.45, 0.12),
+                               (16.3, 3.2, 0)]),
                  540, coin_edge)
 
 
@@ -76,7 +77,8 @@ def _indices():
 def _hand(length, tail, width, low, ridge):
     """A sword of four flats: widest a fourth from the middle."""
     wide = -0.28 * length
-    corners = [(-0.3, low, tail), (0.3, low, tail), (width / 2, low, wide), (0.0, low, -length), (-width / 2, low, wide),
+    half = width / 2
+    corners = [(-0.3, low, tail), (0.3, low, tail), (half, low, wide), (0.0, low, -length), (-half, low, wide),
                (0.0, low + ridge, tail), (0.0, low + ridge, wide), (0.0, low + ridge * 0.4, -length)]
     top = [(0, 5, 6), (0, 6, 4), (5, 1, 2), (5, 2, 6), (4, 6, 7), (4, 7, 3), (6, 2, 3), (6, 3, 7), (0, 1, 5)]
     bottom = [(0, 4, 2), (0, 2, 1), (4, 3, 2)]
@@ -166,9 +168,11 @@ def parts():
     """(node, material, shape) of each part."""
     markers, paint = _indices()
     hour, minute = math.radians(304.5), math.radians(54.0)
-    hands = ((_hand(8.6, 2.0, 2.0, DIAL_HEIGHT + 0.85, 0.34), hour), (_hand(12.9, 2.4, 1.7, DIAL_HEIGHT + 1.3, 0.3), minute))
+    hands = ((_hand(8.6, 2.0, 2.0, DIAL_HEIGHT + 0.85, 0.34), hour),
+             (_hand(12.9, 2.4, 1.7, DIAL_HEIGHT + 1.3, 0.3), minute))
     return [("Case", "Case", _case()), ("Bezel", "Bezel", _bezel()), ("Insert", "Insert", _insert()),
-            ("Crown", "Case", _crown()), ("Dial", "Dial", _dial()), ("Indices", "Hands", markers), ("Paint", "Paint", paint),
+            ("Crown", "Case", _crown()), ("Dial", "Dial", _dial()), ("Indices", "Hands", markers),
+            ("Paint", "Paint", paint),
             ("HourHand", "Hands", _turned(*hands[0])), ("MinuteHand", "Hands", _turned(*hands[1])),
             ("SecondHand", "SecondHand", _turned(_second_hand(), math.radians(214.0), 0.0, DIAL_HEIGHT + 1.75)),
             ("Glass", "Glass", _crystal()), ("Strap", "Strap", _strap()), ("Stitches", "Thread", _stitches()),
