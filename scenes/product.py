@@ -11,7 +11,7 @@ import still_life
 import watch
 from gltf import Gltf, look_at, rounded
 
-EYE, TARGET, YFOV_DEGREES = (0.003, 0.099, 0.316), (0.003, 0.038, 0.0), 20.1  # 35 degrees across at 16:9
+EYE, TARGET, YFOV_DEGREES = (0.001, 0.100, 0.324), (0.001, 0.0365, 0.0), 20.1  # 35 degrees across at 16:9
 WATCH_TILT, WATCH_YAW = math.radians(54.0), math.radians(16.0)
 CLOTH_HEIGHT = 0.0086
 WATCH_UNIT, BOTTLE_UNIT = 0.00108, 0.00086  # metres for a millimetre of their drawings: a case of 43 mm, 15 ml
