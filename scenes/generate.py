@@ -1,6 +1,6 @@
 """Writes the scenes of this folder and the files that the journals add to them.
 
-usage: python3 generate.py spheres|garden|journal-files FOLDER
+usage: python3 generate.py spheres|garden|product|journal-files FOLDER
        python3 generate.py garden FOLDER LEAVES    another number of leaves a tree than 275
 
 Standard library only; the same bytes in every run.
@@ -14,6 +14,7 @@ sys.dont_write_bytecode = True
 
 import garden
 import images
+import product
 import shapes
 import spheres
 from gltf import Gltf, write_glb
@@ -32,7 +33,8 @@ def write_journal_files(folder):
 
 
 def main(arguments):
-    writers = {"spheres": spheres.write, "garden": garden.write, "journal-files": write_journal_files}
+    writers = {"spheres": spheres.write, "garden": garden.write, "product": product.write,
+               "journal-files": write_journal_files}
     if len(arguments) == 3 and arguments[0] == "garden" and arguments[2].isdigit():
         garden.write(arguments[1], int(arguments[2]))
         return 0

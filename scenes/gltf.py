@@ -67,11 +67,13 @@ class Gltf:
             accessor["max"] = [max(stored[i::width]) for i in range(width)]
         return self.add("accessors", accessor)
 
-    def add_geometry(self, shape):
-        """Packs a shape once; meshes with different materials may share the result."""
-        attributes = {"POSITION": self._floats([rounded(p, 6) for p in shape.positions], "VEC3", bounds=True),
+    def add_geometry(self, shape, digits=6):
+        """Packs a shape once, its places to `digits` decimals; meshes with different materials may share the result."""
+        attributes = {"POSITION": self._floats([rounded(p, digits) for p in shape.positions], "VEC3", bounds=True),
                       "NORMAL": self._floats([rounded(n, 6) for n in shape.normals], "VEC3"),
                       "TEXCOORD_0": self._floats([rounded(t, 6) for t in shape.uvs], "VEC2")}
+        if shape.tangents:
+            attributes["TANGENT"] = self._floats([rounded(t, 6) for t in shape.tangents], "VEC4")
         wide = len(shape.positions) > 65535
         flat = [index for triangle in shape.triangles for index in triangle]
         data = struct.pack("<%d%s" % (len(flat), "I" if wide else "H"), *flat)
@@ -100,11 +102,22 @@ class Gltf:
         return index
 
     def add_light(self, name, kind, color, intensity, **node):
-        """A light and the node of the same name that places it."""
-        self.use_extension("KHR_lights_punctual")
-        lights = self.document.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {"lights": []})["lights"]
-        lights.append({"name": name, "type": kind, "color": color, "intensity": intensity})
-        return self.add_node(name, extensions={"KHR_lights_punctual": {"light": len(lights) - 1}}, **node)
+        """A light without size and the node of the same name that places it."""
+        return self._add_light("KHR_lights_punctual",
+                               {"name": name, "type": kind, "color": color, "intensity": intensity}, node)
+
+    def add_area_light(self, name, kind, color, intensity, size, aspect=1.0, **node):
+        """A "rect" (`size` high, `aspect` times as wide) or a "disk" (`size` across) that shines along -z, in nits."""
+        light = {"name": name, "type": kind, "color": color, "intensity": intensity, "size": size}
+        if kind == "rect":
+            light["rect"] = {"aspect": aspect}
+        return self._add_light("EXT_lights_area", light, node)
+
+    def _add_light(self, extension, light, node):
+        self.use_extension(extension)
+        lights = self.document.setdefault("extensions", {}).setdefault(extension, {"lights": []})["lights"]
+        lights.append(light)
+        return self.add_node(light["name"], extensions={extension: {"light": len(lights) - 1}}, **node)
 
     def add_camera(self, name, eye, target, yfov_degrees):
         camera = self.add("cameras", {"name": name, "type": "perspective",

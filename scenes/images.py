@@ -22,17 +22,25 @@ def noise(x, y, period):
 
 def write_png(path, size, pixel):
     """8-bit RGB, size x size; pixel(u, v) -> three numbers in [0, 1], v downwards."""
-    rows = bytearray()
+    data = bytearray()
     for y in range(size):
-        rows.append(0)
         for x in range(size):
-            rows += bytes(min(max(round(c * 255), 0), 255) for c in pixel((x + 0.5) / size, (y + 0.5) / size))
+            data += bytes(min(max(round(c * 255), 0), 255) for c in pixel((x + 0.5) / size, (y + 0.5) / size))
+    write_rows(path, size, size, data)
+
+
+def write_rows(path, width, height, data):
+    """An 8-bit PNG of RGB bytes, row 0 on top."""
+    rows = bytearray()
+    for y in range(height):
+        rows.append(0)
+        rows += data[y * width * 3:(y + 1) * width * 3]
 
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     os.makedirs(os.path.dirname(path), exist_ok=True)
     with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 2, 0, 0, 0)) +
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
                    chunk(b"IDAT", zlib.compress(bytes(rows), 9)) + chunk(b"IEND", b""))
 
 

@@ -21,10 +21,11 @@ def _unit(v, otherwise=(0.0, 1.0, 0.0)):
 
 
 class Shape:
-    """positions, normals (unit), uvs: one per vertex; triangles: three vertex indices each."""
+    """positions, normals (unit), uvs: one per vertex; tangents (x, y, z, w) as well, or none; triangles: three vertex
+    indices each."""
 
     def __init__(self):
-        self.positions, self.normals, self.uvs, self.triangles = [], [], [], []
+        self.positions, self.normals, self.tangents, self.uvs, self.triangles = [], [], [], [], []
 
     def add(self, other, move=(0, 0, 0), scale=(1, 1, 1), turn=0.0):
         """Appends `other`, scaled, turned by `turn` radians about +y, then moved. Returns self."""
@@ -36,6 +37,9 @@ class Shape:
         for n in other.normals:
             x, y, z = n[0] / scale[0], n[1] / scale[1], n[2] / scale[2]
             self.normals.append(_unit((c * x + s * z, y, c * z - s * x)))
+        for t in other.tangents:
+            x, y, z = t[0] * scale[0], t[1] * scale[1], t[2] * scale[2]
+            self.tangents.append(_unit((c * x + s * z, y, c * z - s * x)) + (t[3],))
         self.uvs += other.uvs
         self.triangles += [tuple(first + i for i in triangle) for triangle in other.triangles]
         return self

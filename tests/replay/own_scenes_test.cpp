@@ -1,5 +1,5 @@
-// The project's own scenes under its own journals: every row of the paper's Tables 1 and 3 gives, step by step, the
-// frame that a full render gives, bit for bit.
+// The project's own scenes under its own journals: every row of the paper's Tables 1 and 3, and every edit of the product
+// shot's lights, surroundings and materials gives, step by step, the frame that a full render gives, bit for bit.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -77,6 +77,29 @@ TEST(OwnScenes, table3_on_garden_is_exact) {
   }
   EXPECT_EQ(classes, (std::vector<std::string>{"base", "color", "color", "color", "color", "optical", "geometric",
                                                "geometric", "geometric"}));
+}
+
+TEST(OwnScenes, journals_of_product_are_exact) {
+  const ScratchFolder folder("product");
+  generate("product", folder / "product");
+  for (const char* what : {"rotation", "hdris", "lights", "softness", "three-point", "materials"}) {
+    SCOPED_TRACE(what);
+    const ScratchFolder run(std::string("product_") + what);
+    const Json report = verified_report({.scene = folder / "product/product.gltf",
+                                         .journal = kProject / "journals" / (std::string("product-") + what + ".json"),
+                                         .resolution = "64x36",
+                                         .view = {"--integrator", "path", "--samples", "2"}},
+                                        run);
+    ASSERT_TRUE(report.contains("steps"));
+    for (const Json& step : report["steps"]) {
+      SCOPED_TRACE(step["name"].get<std::string>());
+      EXPECT_EQ(step["verify"]["pixels_different"], 0);
+      EXPECT_GT(step["verify"]["pixels_compared"], 0);
+      if (step["step"] != 0) {
+        EXPECT_GT(step["pixels_changed"], 0);
+      }
+    }
+  }
 }
 
 }  // namespace
