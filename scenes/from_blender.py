@@ -62,8 +62,8 @@ def emission_edits(exported, unit):
     for name, material in zip(names_of(materials, "material"), materials):
         if any(material.get("emissiveFactor", ())):
             strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {})
-            edits.append({"op": "add", "path": pointer("materials", name, "extensions", "KHR_materials_emissive_strength",
-                                                       "emissiveStrength"),
+            where = ("extensions", "KHR_materials_emissive_strength", "emissiveStrength")
+            edits.append({"op": "add", "path": pointer("materials", name, *where),
                           "value": rounded(unit * strength.get("emissiveStrength", 1.0))})
     return edits
 

@@ -12,8 +12,8 @@ def warn(text):
 
 
 def rounded(value):
-    """Seven digits, which is what Blender's floats hold."""
-    return [rounded(v) for v in value] if isinstance(value, (list, tuple)) else float("%.7g" % value)
+    """Six digits: Blender's floats hold seven, less what its matrices lose."""
+    return [rounded(v) for v in value] if isinstance(value, (list, tuple)) else float("%.6g" % value)
 
 
 def active_output(tree, kind):

@@ -37,18 +37,26 @@ def emission(lamp):
     return color, watts, temperature
 
 
-def shape_of(lamp, axes):
-    """An area lamp as EXT_lights_area has it, without colour; and its area in m2. `axes`: as Exported.axes() has it."""
+def area_light(lamp, emitted, axes):
+    """An area lamp as EXT_lights_area has it, and whether it is an ellipse, which becomes a disk of the same area.
+    `axes`: as Exported.axes() has them.
+    """
+    color, watts, temperature = emitted
+    is_rect = lamp.shape in ("SQUARE", "RECTANGLE")
     width = lamp.size * axes[0]
     height = (lamp.size_y if lamp.shape in ("RECTANGLE", "ELLIPSE") else lamp.size) * axes[1]
     if width * height == 0:
         raise Unsupported("it has no area")
-    scale = max(axes)  # EXT_lights_area: the largest counts, for both directions
-    if lamp.shape in ("SQUARE", "RECTANGLE"):
-        return {"type": "rect", "size": height / scale, "rect": {"aspect": width / height}}, width * height
-    if abs(width - height) > 1e-4 * max(width, height):
-        warn("light \"%s\": an ellipse becomes a disk of the same area" % lamp.name)
-    return {"type": "disk", "size": math.sqrt(width * height) / scale}, math.pi / 4 * width * height
+    area = width * height * (1 if is_rect else math.pi / 4)
+    scale = max(axes)  # the extension lets the largest count for both sides
+    light = {"type": "rect" if is_rect else "disk", "color": rounded(color), "intensity": rounded(watts / (4 * area)),
+             "size": rounded((height if is_rect else math.sqrt(width * height)) / scale)}
+    if is_rect:
+        light["rect"] = {"aspect": rounded(width / height)}
+    extras = extras_of(lamp, temperature)
+    if extras:
+        light["extras"] = extras
+    return light, not is_rect and abs(width - height) > 1e-4 * width
 
 
 def punctual_intensity(lamp, watts):
@@ -139,17 +147,11 @@ def punctual_edits(exported, index, lamp, emitted):
 
 def area_edits(exported, node, lamp, emitted, taken, areas):
     """The node's reference, after the light itself unless a node before has the same. `areas`: {(lamp, light): name}"""
-    color, watts, temperature = emitted
-    shape, area = shape_of(lamp, exported.axes(node))
-    light = {"type": shape["type"], "color": rounded(color), "intensity": rounded(watts / (4 * area)),
-             "size": rounded(shape["size"])}
-    if "rect" in shape:
-        light["rect"] = {"aspect": rounded(shape["rect"]["aspect"])}
-    extras = extras_of(lamp, temperature)
-    if extras:
-        light["extras"] = extras
+    light, is_ellipse = area_light(lamp, emitted, exported.axes(node))
     key, edits = (lamp.name_full, json.dumps(light)), []
     if key not in areas:
+        if is_ellipse:
+            warn("light \"%s\": an ellipse becomes a disk of the same area" % lamp.name)
         areas[key] = unique(printable(lamp.name) or "area", taken)
         edits.append({"op": "add", "path": pointer("lights", areas[key]), "value": light})
     return edits + [{"op": "add", "path": pointer("nodes", exported.node_names[node], "extensions", "EXT_lights_area"),

@@ -79,7 +79,7 @@ def skies_of(world):
 
 
 def copied(image, stem):
-    """The file of an image, put beside the exported scene if it is not there; its name. `stem`: of the path to write."""
+    """The name of an image's file beside the exported scene, where it is put if need be. `stem`: of its path."""
     suffix = os.path.splitext(image.filepath)[1].lower()
     if suffix not in (".hdr", ".exr") or image.source != "FILE":
         raise Unsupported("image \"%s\" is neither .hdr nor .exr" % image.name)
@@ -100,8 +100,8 @@ def copied(image, stem):
 
 
 def baked(world, stem, by_camera):
-    """Renders what the world shows in all directions to stem.exr, the middle along Blender's +Y, which is glTF's -Z; its
-    name. `by_camera`: as camera rays see it, else as all others do.
+    """Renders what the world shows in all directions to stem.exr, the middle along Blender's +Y, which is glTF's -Z;
+    returns its name. `by_camera`: as camera rays see it, else as all others do.
     """
     shown = world.copy()
     shown.cycles.sampling_method = "NONE"
