@@ -76,7 +76,7 @@ def extras_of(lamp, temperature):
 
 def warn_of_settings(source):
     """What of a lamp has no place in the look document."""
-    lamp, cycles = source.data, source.data.cycles
+    lamp, cycles = source.data, getattr(source.data, "cycles", None)
     lost = []
     if lamp.type == "AREA" and getattr(lamp, "spread", math.pi) < math.pi - 1e-4:
         lost.append("its spread")
@@ -105,7 +105,7 @@ def light_edits(exported, unit):
             continue
         lamp, index, name = source.data, exported.light_of(node), exported.node_names[node]
         try:
-            if lamp.type == "AREA" and lamp.cycles.is_portal:
+            if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
                 continue  # a portal guides sampling and gives no light
             color, watts, temperature = emission(lamp)
             if lamp.type == "AREA":

@@ -103,6 +103,8 @@ def baked(world, stem, by_camera):
     """Renders what the world shows in all directions to stem.exr, the middle along Blender's +Y, which is glTF's -Z;
     returns its name. `by_camera`: as camera rays see it, else as all others do.
     """
+    if not hasattr(world, "cycles"):
+        raise Unsupported("world \"%s\" would be rendered by Cycles, which is not enabled" % world.name)
     shown = world.copy()
     shown.cycles.sampling_method = "NONE"
     for node in [node for node in shown.node_tree.nodes if node.type == "LIGHT_PATH"]:
