@@ -32,6 +32,13 @@ Json json_of(const fs::path& file) {
   return parse_json(text_of(bytes), file.string());
 }
 
+/// Why Blender cannot export here; "" if it can.
+std::string what_is_lacking() {
+  if (run_program({"blender", "--version"}).exit_code != 0) return "Blender is not installed";
+  const bool has_numpy = run_blender({"--python-exit-code", "3", "--python-expr", "import numpy"}).exit_code == 0;
+  return has_numpy ? "" : "Blender's Python has no numpy, which its glTF exporter needs";
+}
+
 /// The JSON chunk of a .glb.
 Json json_of_glb(const fs::path& file) {
   const Bytes bytes = read_file(file);
@@ -82,9 +89,8 @@ void expect_near(const Json& actual, double expected) {
 class Blender : public testing::Test {
  protected:
   void SetUp() override {
-    if (run_program({"blender", "--version"}).exit_code != 0) GTEST_SKIP() << "Blender is not installed";
-    if (run_program({"blender", "-b", "--python-exit-code", "3", "--python-expr", "import numpy"}).exit_code != 0)
-      GTEST_SKIP() << "Blender's Python has no numpy, which its glTF exporter needs";
+    static const std::string lack = what_is_lacking();  // a start of Blender takes a second
+    if (!lack.empty()) GTEST_SKIP() << lack;
     static std::optional<Export> shared;
     if (!shared) shared.emplace();
     export_ = &*shared;
