@@ -32,8 +32,8 @@ TEST_F(IntegratorCli, depths_are_for_path_alone) {
 }
 
 TEST_F(IntegratorCli, structures_that_path_has_none_of_are_refused) {
-  const std::vector<std::vector<std::string>> asked{{"--tunnels", "1"},      {"--groups", "4"},     {"--shadow-bits", "2"},
-                                                    {"--color-trees", "50"}, {"--ray-trees", "50"}};
+  const std::vector<std::vector<std::string>> asked{
+      {"--tunnels", "1"}, {"--groups", "4"}, {"--shadow-bits", "2"}, {"--color-trees", "50"}, {"--ray-trees", "50"}};
   for (const auto& flags : asked) {
     expect_error(preprocess_path("c", flags), 1, "preprocess " + flags[0] + ": it is for --integrator whitted");
     EXPECT_FALSE(std::filesystem::exists(at("c")));
@@ -58,7 +58,8 @@ TEST_F(IntegratorCli, a_replay_is_of_the_integrator_of_its_cache) {
   EXPECT_FALSE(std::filesystem::exists(at("r")));
   ASSERT_EQ(replay("path", "paths", {"--integrator", "path", "--verify"}).exit_code, 0);
   ASSERT_EQ(replay("whitted", "lamps").exit_code, 0);
-  const Json paths = read_json(at("paths/report.json"))["options"], lamps = read_json(at("lamps/report.json"))["options"];
+  const Json paths = read_json(at("paths/report.json"))["options"];
+  const Json lamps = read_json(at("lamps/report.json"))["options"];
   EXPECT_EQ(paths["integrator"], "path");
   EXPECT_EQ(paths["diffuse_depth"], 1);
   EXPECT_EQ(paths["glossy_depth"], 2);
