@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/parallel.h"
+#include "frame/frame_layers.h"
 #include "image/image_pieces.h"
 #include "image/layered_frame.h"
 #include "layer_file.h"
@@ -92,7 +93,7 @@ TEST_P(PathLayers, are_the_same_when_sums_have_left_memory) {
 TEST_P(PathLayers, of_first_hits_are_there_and_no_light_is_needed_for_them) {
   const SceneState state = path_scene(GetParam());
   RenderStats stats;
-  Image image = render_with_sums(state.scene(), kView, stats);
+  const Image image = render_with_sums(state.scene(), kView, stats);
   const LayerFile file = layers(state.scene(), image, PixelFormat::half);
   std::size_t hits = 0;
   for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
