@@ -1,4 +1,5 @@
 // `relook inspect`: what a scene, cache, journal or run holds; with --look the look document of a scene or cache.
+#include <cstdio>
 #include <filesystem>
 
 #include "base/system/standard_input.h"
@@ -6,6 +7,7 @@
 #include "input/load_cache.h"
 #include "input/load_scene.h"
 #include "inspect_journal.h"
+#include "light/environment_light.h"
 #include "options/outputs.h"
 #include "scene/look/look.h"
 #include "verbs.h"
@@ -45,8 +47,37 @@ LoadedDocument load_lit_document(const Arguments& arguments) {
   return loaded;
 }
 
+/// Of lights that are areas: their sizes, before nodes scale them.
+void say_areas(const Json& lights, Json& summary, Console& console) {
+  summary["areas"] = Json::array();
+  for (const auto& [name, light] : lights.items()) {
+    const std::string kind = light.at("type").get<std::string>();
+    if (kind != traits_of(LightKind::rect).word && kind != traits_of(LightKind::disk).word) continue;
+    const double height = light.value("size", 1.0);
+    const double width = height * light.value("rect", Json::object()).value("aspect", 1.0);
+    summary["areas"].push_back({{"light", name}, {"kind", kind}, {"size", {width, height}}});
+    char size[64];
+    std::snprintf(size, sizeof size, "%g x %g m", width, height);
+    console.line("light " + printable(name) + ": " + kind + ", " + size);
+  }
+}
+
+/// How much of an environment's light paths sample as its suns.
+void say_suns(LookDocument document, Json& summary, Console& console) {
+  Camera any;
+  any.width = any.height = 1;
+  const SceneState state(std::move(document), any, std::make_shared<PyramidStore>(), Integrator::path);
+  const std::shared_ptr<const TexturePyramid>& image = state.scene().environment.image;
+  if (image == nullptr) return;
+  const double share = EnvironmentLight(image).sun_share();
+  summary["sun_share"] = share;
+  char percent[32];
+  std::snprintf(percent, sizeof percent, "%.1f %%", 100 * share);
+  console.line("environment: " + std::string(percent) + " of its image's light are suns");
+}
+
 void inspect_scene(const Arguments& arguments, Console& console) {
-  const LoadedDocument loaded = load_lit_document(arguments);
+  LoadedDocument loaded = load_lit_document(arguments);
   console.warn(loaded.warnings);
   const LookDocument& document = loaded.document;
   std::uint64_t triangles = 0;
@@ -67,6 +98,9 @@ void inspect_scene(const Arguments& arguments, Console& console) {
   }
   console.line(line);
   for (const Json& name : cameras) console.line("camera " + name.get<std::string>());
+  say_areas(document.look.at("lights"), summary, console);
+  if (arguments.view.sampling.integrator == Integrator::path)
+    say_suns(std::move(loaded.document), summary, console);
   console.json(summary);
 }
 
@@ -75,10 +109,15 @@ void inspect_cache(const Arguments& arguments, Console& console) {
   require_sound(read_manifest(arguments.inputs[0], manifest), arguments.inputs[0]);
   const Json& content = manifest["content"];
   const CacheSizes sizes = cache_sizes(manifest);
+  const bool is_path = integrator_of(manifest) == Integrator::path;
+  const std::string depths = is_path ? " (diffuse " + content["diffuse_depth"].dump() + ", glossy " +
+                                           content["glossy_depth"].dump() + ")"
+                                     : "";
   console.line(arguments.inputs[0] + ": scene " + content["scene"].get<std::string>() + ", camera " +
                content["camera"]["name"].get<std::string>() + ", " + content["camera"]["width"].dump() + "x" +
-               content["camera"]["height"].dump() + ", " + content["samples"].dump() + " samples a pixel, depth " +
-               content["max_depth"].dump() + ", " + content["objects"].dump() + " objects, " +
+               content["camera"]["height"].dump() + ", " + content["samples"].dump() + " samples a pixel, " +
+               content["integrator"].get<std::string>() + ", depth " + content["max_depth"].dump() + depths + ", " +
+               content["objects"].dump() + " objects, " +
                content["lights"].dump() + " lights, " + std::to_string(content["files"].size()) + " files, " +
                std::to_string(sizes.total_bytes) + " bytes");
   // The rows of the paper's Table 2 that are kept on disk; groups follow from the paths of the samples.

@@ -34,7 +34,7 @@ LayerScene::LayerScene(const Scene& scene, const ViewOptions& options, const Fra
       first_hits(scene.integrator == Integrator::path ? std::optional(scene_of_first_hits(scene)) : std::nullopt),
       rays(first_hits ? *first_hits : scene),
       level(tracer.build(rays)),
-      grow{rays, &level, first_hits ? 1 : options.max_depth, 0} {
+      grow{rays, &level, first_hits ? 1U : options.max_depth, 0} {
   for (const Object& object : scene.objects) {
     object_ids.push_back(cryptomatte_id(object.node));
     material_ids.push_back(object.material.is_none() ? 0 : cryptomatte_id(matte_name(scene.material(object.material))));

@@ -1,0 +1,115 @@
+// --integrator, --diffuse-depth and --glossy-depth: which verbs take them, what is refused beside them, and that a
+// cache, its replays and their reports are of one integrator.
+#include "cli_fixture.h"
+
+namespace relook {
+namespace {
+
+class IntegratorCli : public Cli {
+ protected:
+  /// A cache of Integrator::path.
+  ProgramResult preprocess_path(const std::string& output, std::vector<std::string> flags = {}) const {
+    flags.insert(flags.begin(), {"preprocess", kScene, "-o", at(output), "--resolution", "24x16", "--quiet",
+                                 "--integrator", "path"});
+    return relook(flags);
+  }
+  ProgramResult replay(const std::string& cache, const std::string& run, std::vector<std::string> flags = {}) const {
+    flags.insert(flags.begin(), {"replay", at(cache), at("j.json"), "-o", at(run), "--quiet"});
+    return relook(flags);
+  }
+  void write_journal() const { write_text(at("j.json"), R"({"relook": "journal/1", "steps": []})"); }
+};
+
+TEST_F(IntegratorCli, depths_are_for_path_alone) {
+  for (const char* option : {"--diffuse-depth", "--glossy-depth"}) {
+    expect_error(relook({"render", kScene, "-o", at("x.exr"), option, "1"}), 1, std::string("render ") + option);
+    expect_error(relook({"preprocess", kScene, "-o", at("c"), option, "1", "--integrator", "whitted"}), 1,
+                 "it is for --integrator path");
+    expect_error(relook({"render", kScene, "-o", at("x.exr"), option, "17", "--integrator", "path"}), 1, option);
+  }
+  expect_error(relook({"render", kScene, "-o", at("x.exr"), "--integrator", "pat"}), 1, "--integrator");
+  expect_error(relook({"plan", at("c"), at("j"), "--integrator", "path"}), 1, "plan takes no --integrator");
+}
+
+TEST_F(IntegratorCli, structures_that_path_has_none_of_are_refused) {
+  const std::vector<std::vector<std::string>> asked{
+      {"--tunnels", "1"}, {"--groups", "4"}, {"--shadow-bits", "2"}, {"--color-trees", "50"}, {"--ray-trees", "50"}};
+  for (const auto& flags : asked) {
+    expect_error(preprocess_path("c", flags), 1, "preprocess " + flags[0] + ": it is for --integrator whitted");
+    EXPECT_FALSE(std::filesystem::exists(at("c")));
+  }
+  write_journal();
+  ASSERT_EQ(preprocess_path("c", {"--tunnels", "0", "--groups", "0", "--shadow-bits", "0", "--color-trees", "0",
+                                  "--ray-trees", "100"})
+                .exit_code,
+            0);
+  for (const auto& flags : asked) expect_error(replay("c", "r", flags), 1, "replay " + flags[0]);
+  expect_error(replay("c", "r", {"--params", "/lights"}), 1, "replay --params: it is for --integrator whitted");
+  EXPECT_FALSE(std::filesystem::exists(at("r")));
+}
+
+TEST_F(IntegratorCli, a_replay_is_of_the_integrator_of_its_cache) {
+  write_journal();
+  ASSERT_EQ(preprocess_path("path", {"--diffuse-depth", "1", "--glossy-depth", "2"}).exit_code, 0);
+  ASSERT_EQ(preprocess("whitted").exit_code, 0);
+  expect_error(replay("path", "r", {"--integrator", "whitted"}), 3,
+               "the cache is of --integrator path; preprocess again with --integrator whitted");
+  expect_error(replay("whitted", "r", {"--integrator", "path"}), 3, "the cache is of --integrator whitted");
+  EXPECT_FALSE(std::filesystem::exists(at("r")));
+  ASSERT_EQ(replay("path", "paths", {"--integrator", "path", "--verify"}).exit_code, 0);
+  ASSERT_EQ(replay("whitted", "lamps").exit_code, 0);
+  const Json paths = read_json(at("paths/report.json"))["options"];
+  const Json lamps = read_json(at("lamps/report.json"))["options"];
+  EXPECT_EQ(paths["integrator"], "path");
+  EXPECT_EQ(paths["diffuse_depth"], 1);
+  EXPECT_EQ(paths["glossy_depth"], 2);
+  for (const char* none : {"tunnels", "groups", "color_trees"}) EXPECT_EQ(paths[none], 0) << none;
+  EXPECT_EQ(lamps["integrator"], "whitted");
+  EXPECT_TRUE(lamps["diffuse_depth"].is_null());
+  EXPECT_GT(lamps["tunnels"], 0);
+  expect_error(relook({"blame", at("paths"), "1,1"}), 1, "--integrator path");
+}
+
+TEST_F(IntegratorCli, a_cache_or_run_of_the_other_one_is_in_the_way) {
+  write_journal();
+  ASSERT_EQ(preprocess_path("c").exit_code, 0);
+  EXPECT_EQ(preprocess_path("c").exit_code, 0) << "complete";
+  expect_error(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "24x16"}), 1, "--integrator (path)");
+  expect_error(preprocess_path("c", {"--glossy-depth", "1"}), 1, "--glossy-depth (4)");
+  ASSERT_EQ(replay("c", "r").exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("w"), "--resolution", "24x16", "--quiet"}).exit_code, 0);
+  expect_error(replay("w", "r"), 1, "frames of --integrator path, not whitted");
+}
+
+TEST_F(IntegratorCli, inspect_says_how_large_areas_are_and_what_a_cache_is_of) {
+  const std::filesystem::path scene = at("lit/spheres.gltf");
+  std::filesystem::copy(std::filesystem::path(kScene).parent_path(), at("lit"),
+                        std::filesystem::copy_options::recursive);
+  Json gltf = read_json(scene);
+  gltf["extensionsUsed"].push_back("EXT_lights_area");
+  gltf["extensions"]["EXT_lights_area"]["lights"] = {
+      {{"name", "Panel"}, {"type", "rect"}, {"size", 2}, {"rect", {{"aspect", 3}}}}};
+  gltf["scenes"][0]["nodes"].push_back(gltf["nodes"].size());
+  gltf["nodes"].push_back({{"name", "Above"},
+                           {"translation", {0, 4, 0}},
+                           {"extensions", {{"EXT_lights_area", {{"light", 0}}}}}});
+  write_text(scene, gltf.dump());
+  const ProgramResult plain = relook({"inspect", scene.string()});
+  EXPECT_EQ(plain.exit_code, 0);
+  EXPECT_NE(plain.output.find("light Panel: rect, 6 x 2 m"), std::string::npos) << plain.output;
+  EXPECT_NE(plain.output.find("only with --integrator path"), std::string::npos) << plain.output;
+  const ProgramResult result = relook({"inspect", scene.string(), "--integrator", "path", "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  const Json summary = parse_json(result.output, "stdout");  // and no warning
+  ASSERT_EQ(summary["areas"].size(), 1U);
+  EXPECT_EQ(summary["areas"][0]["light"], "Panel");
+  EXPECT_EQ(summary["areas"][0]["kind"], "rect");
+  EXPECT_EQ(summary["areas"][0]["size"], (Json{6.0, 2.0}));
+  EXPECT_FALSE(summary.contains("sun_share")) << "the environment has no image";
+  ASSERT_EQ(preprocess_path("c").exit_code, 0);
+  const ProgramResult cache = relook({"inspect", at("c")});
+  EXPECT_NE(cache.output.find("path, depth 6 (diffuse 0, glossy 4)"), std::string::npos) << cache.output;
+}
+
+}  // namespace
+}  // namespace relook
