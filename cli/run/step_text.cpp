@@ -45,6 +45,7 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
   trace.amounts("resident bytes", {{"ray_paths", resident.ray_paths},
                                    {"ray_trees", resident.ray_trees},
                                    {"sample_colors", resident.sample_colors},
+                                   {"light_sums", resident.light_sums},
                                    {"color_trees", resident.color_trees},
                                    {"groups", resident.groups},
                                    {"tunnels", resident.tunnels}});

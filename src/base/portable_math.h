@@ -108,7 +108,8 @@ struct SinCos {
   const double quarters = radians * (2 * std::numbers::inv_pi);
   const auto whole = static_cast<std::int32_t>(quarters < 0 ? quarters - 0.5 : quarters + 0.5);
   const double turned = static_cast<double>(whole);
-  const double a = (radians - turned * 1.57079632679489656) - turned * 6.12323399573676604e-17;  // [-pi/4, pi/4]
+  // [-pi/4, pi/4]; pi/2 in two parts, the first of 33 bits, so that its product is exact.
+  const double a = (radians - turned * 1.5707963267341256) - turned * 6.077100506506192e-11;
   const double a2 = a * a;
   // Taylor series up to a^15 and a^16.
   double s = -1.0 / 1307674368000;

@@ -76,7 +76,7 @@ void decode(const PartFile& part, BytesView bytes, Reading& reading) {
     case Part::paths:
       return decode_paths(bytes, identity, content);
     case Part::trees:
-      if (reading.uses_trees) decode_trees(bytes, identity, part.group, reading.hits_of_path, content.image);
+      if (reading.uses_trees) decode_trees(bytes, identity, part.group, reading.hits_of_path, content);
       return;
     case Part::tunnels:
       return decode_tunnels(part.group, bytes, reading);
@@ -132,6 +132,15 @@ bool is_loss(const Finding& finding) {
   return finding.is_lost && follows_from_scene && finding.answer.fault != CacheFault::unreadable;
 }
 
+/// A slot for every tile.
+void make_slots(Image& image) {
+  const std::size_t tiles = tile_count(image.frame.width, image.frame.height);
+  const bool has_sums = image.view.integrator == Integrator::path;
+  image.trees.resize(tiles);
+  image.sample_colors.resize(has_sums ? 0 : tiles);
+  image.light_sums.resize(has_sums ? tiles : 0);
+}
+
 /// What has to be traced or built again. Clears in `content` what is lost.
 CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& content) {
   CacheLosses losses;
@@ -148,11 +157,11 @@ CacheLosses take_losses(const std::vector<Finding>& findings, CacheContent& cont
     if (finding.part.part == Part::paths) image.paths = PathTable();
   }
   image.frame.pixels.resize(std::size_t{image.frame.width} * image.frame.height);
-  image.trees.resize(all);
-  image.sample_colors.resize(all);
+  make_slots(image);
   for (const std::size_t tile : tiles) {
     image.trees[tile] = TileTrees();
-    image.sample_colors[tile].clear();
+    if (!image.sample_colors.empty()) image.sample_colors[tile].clear();
+    if (!image.light_sums.empty()) image.light_sums[tile] = PackedSums();
   }
   for (const std::size_t tile : tunnels) {
     content.around_tiles[tile].clear();
@@ -175,9 +184,7 @@ std::vector<Finding> read_image(std::span<const PartFile> parts, Reading& readin
     const PathLayout layout{reading.content.lights, image.view.shadow_bits};
     for (std::size_t i = 0; i < image.paths.size(); ++i)
       reading.hits_of_path.push_back(hit_count(image.paths.words(PathId(static_cast<std::uint32_t>(i))), layout));
-    const std::size_t tiles = tile_count(image.frame.width, image.frame.height);
-    image.trees.resize(tiles);
-    image.sample_colors.resize(tiles);
+    make_slots(image);
   }
   const auto has_trees = [](const PartFile& part) { return part.part == Part::trees; };
   const auto trees = static_cast<std::size_t>(std::ranges::count_if(parts, has_trees));

@@ -128,15 +128,15 @@ enum class TunnelReading : std::uint8_t {
 struct CacheUsers {
   /// All but the image is there and sound: document, assets, pyramids and the plain values.
   std::function<void(CacheContent&)> scene;
-  /// The trees and colours of a tile are there and sound; they may be taken to where there is more room. Comes after
-  /// `scene`, for several tiles at once; the vectors of tiles keep their elements where they are.
+  /// The trees and colours, or sums of light, of a tile are there and sound; they may be taken to where there is more
+  /// room. Comes after `scene`, for several tiles at once; the vectors of tiles keep their elements where they are.
   std::function<void(CacheContent&, std::size_t tile)> tile;
   TunnelReading tunnels = TunnelReading::keep;
 };
 
 /// Reads and verifies every hash and every index. On any fault `content` is untouched; with `losses`, files that are
-/// missing or do not have their hash are none if they can be made good: then the tiles of `losses` have no trees and no
-/// colours, and a lost path table is empty.
+/// missing or do not have their hash are none if they can be made good: then the tiles of `losses` have no trees, no
+/// colours and no sums of light, and a lost path table is empty.
 [[nodiscard]] CacheAnswer read_cache(const std::filesystem::path& path, CacheContent& content,
                                      CacheLosses* losses = nullptr, const CacheUsers& users = {});
 

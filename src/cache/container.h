@@ -18,7 +18,7 @@
 namespace relook {
 
 /// Layout of a cache directory; a change of any byte's meaning raises it.
-inline constexpr std::uint32_t kCacheFormat = 5;
+inline constexpr std::uint32_t kCacheFormat = 6;
 inline constexpr std::string_view kContainerMagic = "RLKCACHE";  // how every .rlk file begins
 
 /// Which cache a file belongs to: the XXH3-128, in hexadecimal, of its scene and of its options.

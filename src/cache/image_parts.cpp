@@ -98,6 +98,7 @@ Bytes encode_trees(const Image& image, std::size_t group, const CacheIdentity& i
   std::vector<std::uint8_t> kept;
   const auto [first, last] = cache_group(image, group);
   const std::vector<std::size_t> samples = tile_samples(image, first, last);
+  const bool has_sums = image.view.integrator == Integrator::path;
   for (std::size_t tile = first; tile < last; ++tile) {
     const TileTrees& trees = image.trees[tile];
     require(trees.paths.size() == samples[tile - first], "a tile has all samples");
@@ -108,6 +109,7 @@ Bytes encode_trees(const Image& image, std::size_t group, const CacheIdentity& i
       u.push_back(hit.u);
       v.push_back(hit.v);
     }
+    if (has_sums) continue;
     const std::vector<Rgba>& tile_colors = image.sample_colors[tile];
     require(tile_colors.size() == trees.paths.size(), "a tile has the colours of all samples");
     colors.insert(colors.end(), tile_colors.begin(), tile_colors.end());
@@ -118,7 +120,10 @@ Bytes encode_trees(const Image& image, std::size_t group, const CacheIdentity& i
   writer.add_column("primitives", primitives, sizeof(std::uint32_t));
   writer.add_column("u", u, sizeof(float));
   writer.add_column("v", v, sizeof(float));
-  if (!colors_are_pixels(image, first, last)) writer.add_column("colors", colors, sizeof(Rgba));
+  if (has_sums)
+    add_sums(writer, std::span(image.light_sums).subspan(first, last - first));
+  else if (!colors_are_pixels(image, first, last))
+    writer.add_column("colors", colors, sizeof(Rgba));
   return writer.finish(identity);
 }
 
@@ -220,22 +225,28 @@ GroupColumns read_columns(const ContainerReader& reader, std::span<const std::si
 }  // namespace
 
 void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
-                  std::span<const std::size_t> hits_of_path, Image& image) {
+                  std::span<const std::size_t> hits_of_path, CacheContent& content) {
   const ContainerReader reader(file, identity);
+  Image& image = content.image;
+  const bool has_sums = image.view.integrator == Integrator::path;
   const auto [first, last] = cache_group(image, group);
   const std::vector<std::size_t> samples = tile_samples(image, first, last);
-  const bool has_colors = reader.has("colors");
-  check_sound(has_colors || image.view.samples == 1, "no section colors");
+  const bool has_colors = !has_sums && reader.has("colors");
+  check_sound(has_sums || has_colors || image.view.samples == 1, "no section colors");
   GroupColumns columns = read_columns(reader, samples, has_colors, hits_of_path);
   for (std::size_t tile = first; tile < last; ++tile) {
     const auto first_color = static_cast<std::ptrdiff_t>(columns.next_sample);
     image.trees[tile] = columns.take_tile(samples[tile - first], columns.kept[tile - first] == 1, hits_of_path);
+    if (has_sums) continue;
     if (!has_colors)
       image.sample_colors[tile] = pixels_of_tile(image.frame, tile);
     else
       image.sample_colors[tile].assign(columns.colors.begin() + first_color,
                                        columns.colors.begin() + static_cast<std::ptrdiff_t>(columns.next_sample));
   }
+  if (!has_sums) return;
+  const std::size_t sums = content.lights + kSumsBesideLights;
+  read_sums(reader, sums, image.frame, first, std::span(image.light_sums).subspan(first, last - first));
 }
 
 }  // namespace relook

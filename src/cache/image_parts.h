@@ -25,8 +25,15 @@ struct TileGroup {
 /// Of the three, the view and the size of the frame are known.
 void decode_frame(BytesView file, const CacheIdentity& identity, Image& image);
 void decode_paths(BytesView file, const CacheIdentity& identity, CacheContent& content);
-/// `hits_of_path`: hit_count() of every path. image.trees and image.sample_colors have a slot for every tile.
+/// `hits_of_path`: hit_count() of every path. content.image.trees has a slot for every tile, as have its sample_colors
+/// or light_sums.
 void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t group,
-                  std::span<const std::size_t> hits_of_path, Image& image);
+                  std::span<const std::size_t> hits_of_path, CacheContent& content);
+
+/// Sections of the sums of light of neighbouring tiles. Requires: as many sums in each.
+void add_sums(ContainerWriter& writer, std::span<const PackedSums> tiles);
+/// Reads them into `tiles`, of which the first is tile `first` of the frame. `sums`: of each.
+void read_sums(const ContainerReader& reader, std::size_t sums, const Frame& frame, std::size_t first,
+               std::span<PackedSums> tiles);
 
 }  // namespace relook

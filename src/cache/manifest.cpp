@@ -116,22 +116,42 @@ PieceNumbers read_pieces(const JsonView& view) {
   return {number("ray_paths"), number("groups"), number("ray_trees"), number("tunnels")};
 }
 
+/// The options that say which definition a picture has: of paths their depths as well.
+void add_integrator(Json& json, const ViewOptions& view) {
+  json["integrator"] = integrator_word(view.integrator);
+  if (view.integrator != Integrator::path) return;
+  json["diffuse_depth"] = view.diffuse_depth;
+  json["glossy_depth"] = view.glossy_depth;
+}
+
+void read_integrator(const JsonView& content, ViewOptions& view) {
+  const JsonView word = content.at("integrator");
+  const auto found = std::ranges::find(kIntegratorWords, word.text());
+  if (found == kIntegratorWords.end()) word.fail("not an integrator");
+  view.integrator = static_cast<Integrator>(found - kIntegratorWords.begin());
+  if (view.integrator != Integrator::path) return;
+  view.diffuse_depth = static_cast<std::uint32_t>(content.at("diffuse_depth").integer(0, kMostDepth));
+  view.glossy_depth = static_cast<std::uint32_t>(content.at("glossy_depth").integer(0, kMostDepth));
+}
+
 Json content_json(const Manifest& manifest) {
   Json files = Json::array();
   for (const CacheFile& file : manifest.files)
     files.push_back({{"name", file.name}, {"bytes", file.bytes}, {"hash", file.hash}});
-  return {{"arithmetic", arithmetic_json(manifest.arithmetic)},
-          {"storage", storage_json(manifest.storage)},
-          {"pieces", pieces_json(manifest.pieces)},
-          {"scene", manifest.identity.scene_hash},
-          {"options", manifest.identity.options_hash},
-          {"camera", camera_json(manifest.camera)},
-          {"samples", manifest.view.samples},
-          {"max_depth", manifest.view.max_depth},
-          {"shadow_bits", manifest.view.shadow_bits},
-          {"objects", manifest.objects},
-          {"lights", manifest.lights},
-          {"files", std::move(files)}};
+  Json content{{"arithmetic", arithmetic_json(manifest.arithmetic)},
+               {"storage", storage_json(manifest.storage)},
+               {"pieces", pieces_json(manifest.pieces)},
+               {"scene", manifest.identity.scene_hash},
+               {"options", manifest.identity.options_hash},
+               {"camera", camera_json(manifest.camera)},
+               {"samples", manifest.view.samples},
+               {"max_depth", manifest.view.max_depth},
+               {"shadow_bits", manifest.view.shadow_bits},
+               {"objects", manifest.objects},
+               {"lights", manifest.lights},
+               {"files", std::move(files)}};
+  add_integrator(content, manifest.view);
+  return content;
 }
 
 Manifest read_content(const JsonView& view) {
@@ -148,6 +168,7 @@ Manifest read_content(const JsonView& view) {
   manifest.view.samples = static_cast<std::uint32_t>(view.at("samples").integer(1, kMostSamples));
   manifest.view.max_depth = static_cast<std::uint32_t>(view.at("max_depth").integer(1, kMostDepth));
   manifest.view.shadow_bits = static_cast<std::uint32_t>(view.at("shadow_bits").integer(0, ShadowCounter::kMostBits));
+  read_integrator(view, manifest.view);
   manifest.objects = static_cast<std::uint32_t>(view.at("objects").integer(0, kMostEntities));
   manifest.lights = static_cast<std::uint32_t>(view.at("lights").integer(0, kMostEntities));
   const JsonView files = view.at("files");
@@ -270,10 +291,11 @@ Manifest manifest_of(const CacheContent& content) {
 }
 
 std::string options_hash(const CacheContent& content) {
-  const Json options{{"camera", camera_json(content.camera)},
-                     {"samples", content.image.view.samples},
-                     {"max_depth", content.image.view.max_depth},
-                     {"shadow_bits", content.image.view.shadow_bits}};
+  Json options{{"camera", camera_json(content.camera)},
+               {"samples", content.image.view.samples},
+               {"max_depth", content.image.view.max_depth},
+               {"shadow_bits", content.image.view.shadow_bits}};
+  add_integrator(options, content.image.view);
   return hash128(bytes_of(options.dump()));
 }
 

@@ -51,6 +51,11 @@ CacheAnswer other_content(const Manifest& there, const Manifest& wanted) {
   compare(view.samples == other_view.samples, "--samples", std::to_string(view.samples));
   compare(view.max_depth == other_view.max_depth, "--max-depth", std::to_string(view.max_depth));
   compare(view.shadow_bits == other_view.shadow_bits, "--shadow-bits", std::to_string(view.shadow_bits));
+  compare(view.integrator == other_view.integrator, "--integrator", std::string(integrator_word(view.integrator)));
+  if (view.integrator == Integrator::path && other_view.integrator == Integrator::path) {
+    compare(view.diffuse_depth == other_view.diffuse_depth, "--diffuse-depth", std::to_string(view.diffuse_depth));
+    compare(view.glossy_depth == other_view.glossy_depth, "--glossy-depth", std::to_string(view.glossy_depth));
+  }
   compare(storage.ray_trees_percent == wanted.storage.ray_trees_percent, "--ray-trees",
           number(storage.ray_trees_percent));
   compare(storage.disk_bytes == wanted.storage.disk_bytes, "--disk",

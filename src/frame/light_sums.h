@@ -8,10 +8,13 @@
 #include <span>
 
 #include "base/math.h"
-#include "frame/sums/packed_sums.h"
-#include "frame/sums/tile_sums.h"
+#include "light/sums/packed_sums.h"
+#include "light/sums/tile_sums.h"
 
 namespace relook {
+
+/// Sums beside those of the lights: sky, ambient light, background, unlit surfaces.
+inline constexpr std::size_t kSumsBesideLights = 4;
 
 /// Colour times intensity of a light, linear RGB.
 using LightColor = std::array<double, 3>;

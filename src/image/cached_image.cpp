@@ -93,7 +93,8 @@ namespace {
 /// Compiles the look document of `content`, which is moved from.
 CacheAnswer compile(CacheContent& content, std::unique_ptr<SceneState>& state) {
   try {
-    state = std::make_unique<SceneState>(std::move(content.document), content.camera, content.pyramids);
+    state = std::make_unique<SceneState>(std::move(content.document), content.camera, content.pyramids,
+                                         content.image.view.integrator);
   } catch (const InputError& error) {
     return {CacheFault::damaged, "look.json", error.what()};
   }
@@ -118,8 +119,15 @@ Moves all_of(const std::vector<std::size_t>& tiles, const Image& image) {
   Moves moves;
   for (const std::size_t tile : tiles) {
     moves.ray_trees += image.trees[tile].paths.size();
-    ++moves.sample_colors;
-    moves.bytes += hit_bytes(image.trees[tile]) + image.sample_colors[tile].size() * sizeof(Rgba);
+    moves.bytes += hit_bytes(image.trees[tile]);
+    if (!image.sample_colors.empty()) {
+      ++moves.sample_colors;
+      moves.bytes += image.sample_colors[tile].size() * sizeof(Rgba);
+    }
+    if (!image.light_sums.empty()) {
+      ++moves.light_sums;
+      moves.bytes += image.light_sums[tile].bytes();
+    }
   }
   return moves;
 }
@@ -131,9 +139,11 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   CacheContent scene_part;
   scene_part.document = content.document;
   scene_part.camera = content.camera;
+  scene_part.image.view = content.image.view;
   scene_part.pyramids = content.pyramids;
   scene_part.objects = content.objects;
   scene_part.lights = content.lights;
+  scene_part.image.view = content.image.view;
   std::unique_ptr<SceneState> state;
   CacheAnswer answer = compile(scene_part, state);
   if (answer.fault != CacheFault::none) return answer;
@@ -158,11 +168,10 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
       if (!state) return;
       std::call_once(is_prepared, [&] {
         check.emplace(state->scene(), so_far.image.paths, so_far.image.view.shadow_bits);
-        add_image_pieces(*residency, so_far.image.trees, so_far.image.sample_colors);
+        add_image_pieces(*residency, so_far.image);
       });
       if (!check->is_sound(so_far.image.trees[tile])) is_broken = true;
-      note_trees(*residency, tile, so_far.image.trees[tile]);
-      note_colors(*residency, tile, so_far.image.sample_colors[tile]);
+      note_pieces(*residency, tile, so_far.image);
     };
   if (CacheAnswer answer = read_cache(path, content, mends ? &losses : nullptr, users);
       answer.fault != CacheFault::none)
@@ -177,10 +186,7 @@ CacheAnswer open_cache(const std::filesystem::path& path, bool mends, OpenedCach
       if (!check->is_sound(image.trees[tile])) is_broken = true;
     });
   } else {
-    for (const std::size_t tile : losses.tiles) {
-      note_trees(*residency, tile, image.trees[tile]);
-      note_colors(*residency, tile, image.sample_colors[tile]);
-    }
+    for (const std::size_t tile : losses.tiles) note_pieces(*residency, tile, image);
   }
   if (is_broken) return {CacheFault::damaged, "trees", "a hit names a triangle that its object does not have"};
   auto tunnels = StoredTunnels::of_cache(path, content.manifest, image.paths);

@@ -5,6 +5,7 @@ namespace relook {
 Moves& Moves::operator+=(const Moves& other) {
   ray_trees += other.ray_trees;
   sample_colors += other.sample_colors;
+  light_sums += other.light_sums;
   color_trees += other.color_trees;
   tunnels += other.tunnels;
   bytes += other.bytes;

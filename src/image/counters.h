@@ -10,7 +10,7 @@ namespace relook {
 /// What left memory or came back. Colour trees and rebuilt ray trees one by one; all else tile by tile. `bytes`: of all
 /// together.
 struct Moves {
-  std::uint64_t ray_trees = 0, sample_colors = 0, color_trees = 0, tunnels = 0, bytes = 0;
+  std::uint64_t ray_trees = 0, sample_colors = 0, light_sums = 0, color_trees = 0, tunnels = 0, bytes = 0;
   Moves& operator+=(const Moves& other);
 };
 
@@ -39,7 +39,8 @@ struct Seconds {
 
 /// Bytes held in memory by kind.
 struct Resident {
-  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, color_trees = 0, groups = 0, tunnels = 0;
+  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, light_sums = 0, color_trees = 0, groups = 0,
+                tunnels = 0;
   std::uint64_t total = 0;  // the frame included
 };
 

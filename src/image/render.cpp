@@ -8,9 +8,9 @@
 
 #include "base/parallel.h"
 #include "base/pool.h"
-#include "color/shade.h"
 #include "image/path_classes.h"
 #include "image/sampling.h"
+#include "image/tile_light.h"
 #include "region/cell_tunnels.h"
 #include "trace/tree/grow.h"
 #include "trace/tree/pack.h"
@@ -35,19 +35,19 @@ struct TileRecord {
 class TileRenderer {
  public:
   /// `tunnels`: null, or which to build.
-  TileRenderer(const GrowScene& grow, const ColorScene& scene, const ViewOptions& view, ProgramTable& programs,
+  TileRenderer(const GrowScene& grow, const TilePrograms& programs, const ViewOptions& view,
                const TunnelRecord* tunnels)
       : grow_(grow),
         view_(view),
         primary_(grow.scene.camera(), view),
-        shader_(scene, programs),
+        shading_(programs, view.samples),
         tunnels_(tunnels) {}
 
   /// Traces and shades all samples of a tile. `record`: where to keep the trees, or null.
-  void render(const TileRect& rect, std::vector<Rgba>& colors, TileRecord* record, GrowCounters& counters) {
+  void render(const TileRect& rect, TileLight& light, TileRecord* record, GrowCounters& counters) {
     const std::uint32_t samples = sample_count(rect, view_.samples);
     ChunkSize chunk(grow_.layout().lights);
-    colors.resize(samples);
+    shading_.begin(rect, light);
     if (record != nullptr) record->trees.first_hit.push_back(0);
     for (std::uint32_t first = 0, last = 0; first < samples; first = last) {
       last = std::min(first + chunk.samples(), samples);
@@ -56,7 +56,7 @@ class TileRenderer {
       rays_.clear();
       primary_.append(rect, first, last, rays_);
       trace_trees(grow_, rays_, first, block_, roots_, counters);
-      shader_.shade(block_, roots_, std::span(colors).subspan(first, last - first));
+      shading_.add(block_, roots_, first, light);
       if (record != nullptr) keep(*record, rect.width());
       chunk.learn(block_, last - first);
     }
@@ -84,7 +84,7 @@ class TileRenderer {
   const GrowScene& grow_;
   const ViewOptions& view_;
   PrimaryRays primary_;
-  Shader shader_;
+  TileShading shading_;
   const TunnelRecord* tunnels_;
   TreeBlock block_;
   std::vector<SpawnedRay> rays_;
@@ -137,14 +137,6 @@ void end_tunnels(TileRecord& record) {
   record.cells.reset();
 }
 
-void set_pixels(const TileRect& rect, const std::vector<Rgba>& colors, std::uint32_t samples, Frame& frame) {
-  const Rgba* color = colors.data();
-  for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
-    Rgba* row = &frame.pixels[std::size_t{y} * frame.width];
-    for (std::uint32_t x = rect.x0; x < rect.x1; ++x, color += samples) row[x] = pixel_color(color, samples);
-  }
-}
-
 /// Renders some tiles; `keep`: also the paths, trees and sample colours. `tunnels`: null, or which to keep, too.
 void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t> tiles, bool keep, RenderStats& stats,
                   const Progress& progress, TunnelRecord* tunnels = nullptr, const MemoryMonitor& monitor = {}) {
@@ -156,8 +148,8 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
   stats.build_seconds = seconds_since(start);
 
   const auto render_start = Clock::now();
-  const GrowScene grow{color_scene, &level, image.view.max_depth, shadow_bits};
-  ProgramTable programs;
+  const GrowScene grow = grow_scene(color_scene, &level, image.view, shadow_bits);
+  const TilePrograms programs(color_scene);
   std::vector<GrowCounters> counters(tiles.size());
   std::vector<TileRecord> records(keep ? tiles.size() : 0);
   const std::vector<std::uint8_t> levels = tunnels != nullptr
@@ -168,14 +160,17 @@ void render_tiles(const Scene& scene, Image& image, std::span<const std::size_t>
   std::mutex progress_mutex;
   parallel_for(tiles.size(), [&](std::size_t i) {
     const TileRect rect = tile_rect(tiles[i], image.frame.width, image.frame.height);
-    std::vector<Rgba> colors;
-    const auto renderer = renderers.take(
-        [&] { return std::make_unique<TileRenderer>(grow, color_scene, image.view, programs, tunnels); });
+    TileLight light;
+    const auto renderer =
+        renderers.take([&] { return std::make_unique<TileRenderer>(grow, programs, image.view, tunnels); });
     if (!levels.empty()) begin_tunnels(records[i], TileGrid(levels[tiles[i]]), *tunnels);
-    renderer->render(rect, colors, keep ? &records[i] : nullptr, counters[i]);
+    renderer->render(rect, light, keep ? &records[i] : nullptr, counters[i]);
     if (!levels.empty()) end_tunnels(records[i]);
-    set_pixels(rect, colors, image.view.samples, image.frame);
-    if (keep) image.sample_colors[tiles[i]] = std::move(colors);
+    programs.set_pixels(rect, light, image.view.samples, image.frame);
+    if (image.view.integrator == Integrator::path)
+      image.light_sums[tiles[i]] = PackedSums::pack(light.sums);
+    else if (keep)
+      image.sample_colors[tiles[i]] = std::move(light.colors);
     const std::size_t finished = ++done;
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
@@ -209,7 +204,9 @@ Image render_image(const Scene& scene, const ViewOptions& view, bool keep, Rende
   std::vector<std::size_t> tiles(tile_count(width, height));
   std::iota(tiles.begin(), tiles.end(), std::size_t{0});
   image.trees.resize(keep ? tiles.size() : 0);
-  image.sample_colors.resize(keep ? tiles.size() : 0);
+  const bool has_sums = view.integrator == Integrator::path;
+  image.sample_colors.resize(keep && !has_sums ? tiles.size() : 0);
+  image.light_sums.resize(has_sums ? tiles.size() : 0);
   render_tiles(scene, image, tiles, keep, stats, progress, tunnels, monitor);
   return image;
 }
@@ -219,6 +216,11 @@ Image render_image(const Scene& scene, const ViewOptions& view, bool keep, Rende
 Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress,
              const MemoryMonitor& monitor) {
   return std::move(render_image(scene, view, false, stats, progress, nullptr, monitor).frame);
+}
+
+Image render_with_sums(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress,
+                       const MemoryMonitor& monitor) {
+  return render_image(scene, view, false, stats, progress, nullptr, monitor);
 }
 
 Image preprocess(const Scene& scene, const ViewOptions& view, RenderStats& stats, const Progress& progress,

@@ -26,6 +26,10 @@ struct RenderStats {
 [[nodiscard]] Frame render(const Scene& scene, const ViewOptions& view, RenderStats& stats,
                            const Progress& progress = {}, const MemoryMonitor& monitor = {});
 
+/// The same with its sums of light, of the path integrator: for layers. Paths and trees are not kept.
+[[nodiscard]] Image render_with_sums(const Scene& scene, const ViewOptions& view, RenderStats& stats,
+                                     const Progress& progress = {}, const MemoryMonitor& monitor = {});
+
 /// Tunnels that are built while an image's ray trees are traced.
 struct TunnelRecord {
   TunnelShape shape{0, 2, std::nullopt};

@@ -21,14 +21,17 @@ Uv position_in_pixel(std::uint32_t k, std::uint32_t n) {
 
 }  // namespace
 
-PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view) : camera_(camera) {
+PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view)
+    : camera_(camera), is_path_(view.integrator == Integrator::path) {
   for (std::uint32_t k = 0; k < view.samples; ++k) in_pixel_.push_back(position_in_pixel(k, view.samples));
 }
 
 SpawnedRay PrimaryRays::through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const {
-  const CameraRay ray =
-      camera_ray(camera_, static_cast<float>(x) + in_pixel_[k].x, static_cast<float>(y) + in_pixel_[k].y);
+  const SampleKey key{pixel_key(x, y), k};
+  const Uv place = is_path_ ? sample_point(key, 0, Purpose::pixel) : in_pixel_[k];
+  const CameraRay ray = camera_ray(camera_, static_cast<float>(x) + place.x, static_cast<float>(y) + place.y);
   SpawnedRay primary{ray.origin, ray.direction, ray.width, ray.spread};
+  if (is_path_) primary.path.key = key;
   primary.start = ray.start;
   primary.end = ray.end;
   return primary;

@@ -1,4 +1,5 @@
-// Samples of a tile: which pixel, where in it, and the primary ray. Fixed positions, no randomness.
+// Samples of a tile: which pixel, where in it, and the primary ray. Positions are fixed: the same in every pixel, or,
+// under the path integrator, points of each pixel's own set.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -54,6 +55,7 @@ class PrimaryRays {
   [[nodiscard]] SpawnedRay through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const;
 
   const Camera& camera_;
+  bool is_path_;
   std::vector<Uv> in_pixel_;  // positions of a pixel's samples, in [0, 1)
 };
 

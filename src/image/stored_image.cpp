@@ -66,11 +66,8 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
 
 void StoredImage::add_pieces() {
   if (residency_.has_kind(PieceKind::ray_trees)) return;  // read under a limit
-  add_image_pieces(residency_, image_.trees, image_.sample_colors);
-  for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) {
-    note_trees(residency_, tile, image_.trees[tile]);
-    note_colors(residency_, tile, image_.sample_colors[tile]);
-  }
+  add_image_pieces(residency_, image_);
+  for (std::size_t tile = 0; tile < image_.trees.size(); ++tile) note_pieces(residency_, tile, image_);
 }
 
 void StoredImage::forget_hits(double share) {
@@ -129,9 +126,10 @@ Resident StoredImage::resident() const {
   resident.tunnels = regions_.tunnel_bytes();
   for (const std::vector<Rgba>& colors : image_.sample_colors)
     resident.sample_colors += colors.capacity() * sizeof(Rgba);
+  for (const PackedSums& sums : image_.light_sums) resident.light_sums += sums.bytes();
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
-  resident.total =
-      resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.groups + resident.tunnels + frame;
+  resident.total = resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.light_sums +
+                   resident.groups + resident.tunnels + frame;
   return resident;
 }
 

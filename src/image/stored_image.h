@@ -76,6 +76,11 @@ class StoredImage {
   void refresh_pixels(std::size_t tile, std::span<const std::uint32_t> samples, const SampleColors* shown,
                       TileMask& changed);
 
+  /// Of the path integrator (stored_sums.cpp). Tiles may be done at the same time.
+  void keep_sums(std::size_t tile, PackedSums sums);
+  /// Works the pixels of a tile out from its sums, adds those that differ to `changed`. `colors`: of all sums.
+  void refresh_from_sums(std::size_t tile, std::span<const LightColor> colors, TileMask& changed);
+
  private:
   [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }
   [[nodiscard]] ClassOf class_of() const {

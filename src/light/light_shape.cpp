@@ -29,7 +29,7 @@ SphereCrossing cross_sphere(const Wide& from, double radius, const Wide& way) {
   const double left = radius * radius - nearest.dot(nearest);
   const double half_chord = std::sqrt(left > 0 ? left : 0.0);
   const double outside = from.dot(from) - radius * radius;
-  if (!(outside > 0)) return {true, along + half_chord};
+  if (!(outside > 0)) return {true, along < 0 ? -outside / (half_chord - along) : along + half_chord};
   return {left >= 0 && along > 0, along > 0 ? outside / (along + half_chord) : 0.0};
 }
 
@@ -95,11 +95,11 @@ std::optional<Patch::Crossing> Patch::cross(const Point& from, const Direction& 
 namespace {
 
 /// A sample at the end of a way; none if it has no length or no density.
-template <class Shape>
-std::optional<LightPoint> at_end(const Shape& shape, const Point& from, const Wide& way) {
+template <class Density>
+std::optional<LightPoint> at_end(const Wide& way, const Density& density) {
   const double distance = length_of(way);
   const Direction direction = narrow(divided(way, distance));
-  return if_any({direction, static_cast<float>(distance), shape.density(from, direction)});
+  return if_any({direction, static_cast<float>(distance), density(direction)});
 }
 
 }  // namespace
@@ -122,13 +122,15 @@ SphericalRect RectShape::seen_from(const Point& from) const {
 
 std::optional<LightPoint> RectShape::sample(const Point& from, const Uv& u) const {
   const SphericalRect seen = seen_from(from);
-  if (!seen.is_regular()) return at_end(*this, from, patch_.way_to({2.0 * u.x - 1, 2.0 * u.y - 1}, from));
+  const auto density_along = [&](const Direction& way) { return density(seen, from, way); };
+  if (!seen.is_regular()) return at_end(patch_.way_to({2.0 * u.x - 1, 2.0 * u.y - 1}, from), density_along);
   const PlanePoint at = seen.point(u);
-  return at_end(*this, from, axis_x_ * at.x + axis_y_ * at.y - patch_.normal() * seen.height());
+  return at_end(axis_x_ * at.x + axis_y_ * at.y - patch_.normal() * seen.height(), density_along);
 }
 
-float RectShape::density(const Point& from, const Direction& way) const {
-  const SphericalRect seen = seen_from(from);
+float RectShape::density(const Point& from, const Direction& way) const { return density(seen_from(from), from, way); }
+
+float RectShape::density(const SphericalRect& seen, const Point& from, const Direction& way) const {
   if (!seen.is_regular()) return patch_.density(from, way, 4 * patch_.area(), Sides::front);
   return patch_.normal().dot(wide(way)) < 0 ? density_of(1 / seen.solid_angle()) : 0.0F;
 }
@@ -140,7 +142,7 @@ std::optional<float> RectShape::cross(const Point& origin, const Direction& way)
 }
 
 std::optional<LightPoint> DiskShape::sample(const Point& from, const Uv& u) const {
-  return at_end(*this, from, patch_.way_to(disc_point(u), from));
+  return at_end(patch_.way_to(disc_point(u), from), [&](const Direction& way) { return density(from, way); });
 }
 
 float DiskShape::density(const Point& from, const Direction& way) const {
@@ -154,7 +156,7 @@ std::optional<float> DiskShape::cross(const Point& origin, const Direction& way)
 }
 
 std::optional<LightPoint> TriangleShape::sample(const Point& from, const Uv& u) const {
-  return at_end(*this, from, patch_.way_to(triangle_point(u), from));
+  return at_end(patch_.way_to(triangle_point(u), from), [&](const Direction& way) { return density(from, way); });
 }
 
 float TriangleShape::density(const Point& from, const Direction& way) const {

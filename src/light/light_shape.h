@@ -81,6 +81,7 @@ class RectShape {
 
  private:
   [[nodiscard]] SphericalRect seen_from(const Point& from) const;
+  [[nodiscard]] float density(const SphericalRect& seen, const Point& from, const Direction& way) const;
 
   Point center_;
   Patch patch_;

@@ -22,6 +22,7 @@ class SphericalRect {
   double x0_, x1_, y0_, y1_, z_;
   bool is_regular_ = false;
   double solid_angle_ = 0;
+  double left_cosine_ = 1, left_sine_ = 0;  // of the signed solid angle of [0, x0] x [y0, y1]
 };
 
 }  // namespace relook

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "replay/drag.h"
 #include "replay/image_pass.h"
+#include "replay/path_step.h"
 #include "replay/recolor.h"
 #include "replay/replay_parts.h"
 
@@ -62,6 +63,7 @@ struct Replayer::Impl {
   }
 
   void choose_parameters(const std::vector<ParameterSet>& sets) {
+    if (is_path()) return;
     parts.color_trees.choose(sets);
     for (const ParameterSet& set : sets) {
       if (!may_compress()) return;
@@ -96,17 +98,26 @@ struct Replayer::Impl {
     counters.pixels_changed = result.changed_pixels.size();
     const PieceCounts moves = parts.residency.take_counts();
     const auto of = [](const auto& counts, PieceKind kind) { return counts[static_cast<std::size_t>(kind)]; };
-    counters.evicted += {of(moves.evicted, PieceKind::ray_trees), of(moves.evicted, PieceKind::sample_colors),
-                         moves.others_evicted, of(moves.evicted, PieceKind::tunnels), moves.evicted_bytes};
+    counters.evicted += {of(moves.evicted, PieceKind::ray_trees),  of(moves.evicted, PieceKind::sample_colors),
+                         of(moves.evicted, PieceKind::light_sums), moves.others_evicted,
+                         of(moves.evicted, PieceKind::tunnels),    moves.evicted_bytes};
     counters.tunnels_read += of(moves.fetched, PieceKind::tunnels);
-    counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees), of(moves.reloaded, PieceKind::sample_colors), 0,
-                          of(moves.reloaded, PieceKind::tunnels), moves.reloaded_bytes};
+    counters.reloaded += {of(moves.reloaded, PieceKind::ray_trees),  of(moves.reloaded, PieceKind::sample_colors),
+                          of(moves.reloaded, PieceKind::light_sums), 0,
+                          of(moves.reloaded, PieceKind::tunnels),    moves.reloaded_bytes};
     counters.rebuilt += parts.stored.take_rebuilt();
     if (counters.ray_tests + counters.ray_tests_culled > 0) return;
     counters.ray_tests_culled = counters.culled.by_class = parts.stored.segments();  // no pass looked at any
   }
 
+  [[nodiscard]] bool is_path() const { return parts.image().view.integrator == Integrator::path; }
+
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+    if (is_path()) {
+      StepResult result = path_step(parts, edit, file, folder);
+      finish(result);
+      return result;
+    }
     require(!dragged.has_lifted(), "a drag is released before the next step");
     StepResult result;
     StopWatch watch;
@@ -117,7 +128,9 @@ struct Replayer::Impl {
     return result;
   }
 
+  /// Under the path integrator a frame of a drag is a step: nothing is lifted out.
   StepResult drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+    if (is_path()) return step(edit, file, folder);
     StepResult result;
     StopWatch watch;
     StepChange change = begin(edit, file, folder, result);
@@ -138,8 +151,10 @@ struct Replayer::Impl {
     StopWatch watch;
     result.counters.samples_total = parts.stored.samples();
     StepChange change = no_change(parts.stored.lights());
-    dragged.end_with(change);
-    update(change, result, watch);
+    if (!is_path()) {
+      dragged.end_with(change);
+      update(change, result, watch);
+    }
     finish(result);
     return result;
   }

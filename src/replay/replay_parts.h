@@ -7,6 +7,7 @@
 #include "cache/residency/residency.h"
 #include "color/color_scene.h"
 #include "image/stored_image.h"
+#include "image/tile_light.h"
 #include "replay/color_tree_store.h"
 #include "replay/kept_selection.h"
 #include "scene/compile/state.h"
@@ -27,7 +28,7 @@ struct ReplayParts {
   [[nodiscard]] std::vector<ObjectId> atoms() const;
   /// The scene as it is now. `scene_level`: over all of it; null if nothing is traced.
   [[nodiscard]] GrowScene grow(const Tracer::TopLevel* scene_level = nullptr) const {
-    return {rays, scene_level, image().view.max_depth, image().view.shadow_bits, &objects};
+    return grow_scene(rays, scene_level, image().view, image().view.shadow_bits, &objects);
   }
   /// The level over the scene as it is now, without the objects `absent` (increasing).
   [[nodiscard]] const Tracer::TopLevel& current_level(std::span<const ObjectId> absent);

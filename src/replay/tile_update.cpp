@@ -61,12 +61,12 @@ class TileUpdater {
       result_.walked_segments += stored_.index().segments(path);
       root =
           update_tree(what_.grow, what_.change.rays, tested, primary, sample, stored, block_, result_.counters, what);
-      last_changed_.set(leaf, what == TreeChange::all);
+      last_changed_.set(leaf, what >= TreeChange::lights);
     } else {
       root = expand_tree(what_.grow, primary, sample, stored, block_, result_.counters);
     }
     if (what_.keeps_trees && (what != TreeChange::none || what_.change.rays.lights_changed)) pack_sample(root, sample);
-    if (what != TreeChange::all && (task & kShade) == 0) {
+    if (what < TreeChange::lights && (task & kShade) == 0) {
       block_.rewind(mark);
       return;
     }

@@ -36,6 +36,7 @@ Json resident_json(const Resident& resident) {
   return {{"ray_paths", resident.ray_paths},
           {"ray_trees", resident.ray_trees},
           {"sample_colors", resident.sample_colors},
+          {"light_sums", resident.light_sums},
           {"color_trees", resident.color_trees},
           {"groups", resident.groups},
           {"tunnels", resident.tunnels},
@@ -43,11 +44,9 @@ Json resident_json(const Resident& resident) {
 }
 
 Json moves_json(const Moves& moves) {
-  return {{"ray_trees", moves.ray_trees},
-          {"sample_colors", moves.sample_colors},
-          {"color_trees", moves.color_trees},
-          {"tunnels", moves.tunnels},
-          {"total", moves.bytes}};
+  return {{"ray_trees", moves.ray_trees},   {"sample_colors", moves.sample_colors},
+          {"light_sums", moves.light_sums}, {"color_trees", moves.color_trees},
+          {"tunnels", moves.tunnels},       {"total", moves.bytes}};
 }
 
 Json verify_json(const std::optional<VerifyResult>& verify) {
@@ -77,7 +76,11 @@ Json number_json(const StepReport& step, bool of_drag) {
 
 Json options_json(const RunReport& report) {
   const StructureOptions& structures = report.structures;
-  return {{"max_depth", report.view.max_depth},
+  const bool is_path = report.view.integrator == Integrator::path;
+  return {{"integrator", integrator_word(report.view.integrator)},
+          {"max_depth", report.view.max_depth},
+          {"diffuse_depth", is_path ? Json(report.view.diffuse_depth) : Json(nullptr)},
+          {"glossy_depth", is_path ? Json(report.view.glossy_depth) : Json(nullptr)},
           {"memory", or_null(structures.memory_bytes)},
           {"policy", structures.policy},
           {"disk", or_null(structures.disk_bytes)},

@@ -18,43 +18,14 @@ constexpr std::string_view kSealStart = ",\"seal\":\"", kSealEnd = "\"}";
 constexpr double kMostSeconds = 1e9;
 constexpr std::int64_t kMostFrames = 1'000'000;
 
-constexpr std::array<std::string_view, 37> kMembers{"step",
-                                                    "name",
-                                                    "class",
-                                                    "reasons",
-                                                    "drag_frame",
-                                                    "wedge_frame",
-                                                    "frame",
-                                                    "frame_hash",
-                                                    "preview",
-                                                    "edits",
-                                                    "source",
-                                                    "files",
-                                                    "command",
-                                                    "seal",
-                                                    "samples_total",
-                                                    "pixels_changed",
-                                                    "samples_affected",
-                                                    "regions_visited",
-                                                    "regions_culled",
-                                                    "regions",
-                                                    "ray_tests",
-                                                    "object_rays",
-                                                    "ray_tests_culled",
-                                                    "ray_tests_culled_by",
-                                                    "ray_updates",
-                                                    "seconds",
-                                                    "resident",
-                                                    "shadow_updates",
-                                                    "evicted",
-                                                    "rebuilt",
-                                                    "reloaded",
-                                                    "peak_rss",
-                                                    "resumed",
-                                                    "exposure",
-                                                    "overlays",
-                                                    "verify_percent",
-                                                    "verify"};
+constexpr std::array<std::string_view, 37> kMembers{
+    "step",           "name",       "class",         "reasons",        "drag_frame",       "wedge_frame",
+    "frame",          "frame_hash", "preview",       "edits",          "source",           "files",
+    "command",        "seal",       "samples_total", "pixels_changed", "samples_affected", "regions_visited",
+    "regions_culled", "regions",    "ray_tests",     "object_rays",    "ray_tests_culled", "ray_tests_culled_by",
+    "ray_updates",    "seconds",    "resident",      "shadow_updates", "evicted",          "rebuilt",
+    "reloaded",       "peak_rss",   "resumed",       "exposure",       "overlays",         "verify_percent",
+    "verify"};
 constexpr std::array<std::string_view, 2> kFurtherMembers{"color_trees_evaluated", "tunnels_read"};
 constexpr std::array<std::string_view, 14> kCounts{"samples_total",
                                                    "samples_affected",
@@ -72,9 +43,10 @@ constexpr std::array<std::string_view, 14> kCounts{"samples_total",
                                                    "step"};
 constexpr std::array<std::string_view, 5> kClasses{"base", "color", "optical", "geometric", "mixed"};
 constexpr std::array<std::string_view, 7> kPhases{"classify", "select", "test", "update", "evaluate", "write", "total"};
-constexpr std::array<std::string_view, 7> kParts{"ray_paths", "ray_trees", "sample_colors", "color_trees",
-                                                 "groups",    "tunnels",   "total"};
-constexpr std::array<std::string_view, 5> kMoved{"ray_trees", "sample_colors", "color_trees", "tunnels", "total"};
+constexpr std::array<std::string_view, 8> kParts{"ray_paths",   "ray_trees", "sample_colors", "light_sums",
+                                                 "color_trees", "groups",    "tunnels",       "total"};
+constexpr std::array<std::string_view, 6> kMoved{"ray_trees",   "sample_colors", "light_sums",
+                                                 "color_trees", "tunnels",       "total"};
 constexpr std::array<std::string_view, 4> kCulledBy{"tunnels", "boxes", "dropped", "class"};
 constexpr std::array<std::string_view, 2> kRegionKinds{"groups", "tunnels"}, kRegionCounts{"visited", "culled"},
     kVerify{"pixels_compared", "pixels_different"};
@@ -176,11 +148,10 @@ void check_entry(const Json& entry) {
 
 bool agrees(const Json& entry, const KnownFrame& known) {
   const auto count = [&](const char* key) { return entry.at(key).get<std::uint64_t>(); };
-  const bool has_its_names =
-      entry.at("edits") == known.edits && entry.at("source") == known.source && entry.at("frame") == known.frame &&
-      entry.at("preview") == known.preview &&
-      entry.at("drag_frame").is_number() == (known.is_numbered && known.is_drag) &&
-      entry.at("wedge_frame").is_number() == (known.is_numbered && !known.is_drag);
+  const bool has_its_names = entry.at("edits") == known.edits && entry.at("source") == known.source &&
+                             entry.at("frame") == known.frame && entry.at("preview") == known.preview &&
+                             entry.at("drag_frame").is_number() == (known.is_numbered && known.is_drag) &&
+                             entry.at("wedge_frame").is_number() == (known.is_numbered && !known.is_drag);
   const bool may_have_counts = (known.is_whole_step || count("samples_total") == known.samples) &&
                                count("samples_total") <= known.samples && count("samples_affected") <= known.samples &&
                                count("pixels_changed") <= known.pixels;

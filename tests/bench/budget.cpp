@@ -25,8 +25,8 @@ class Run {
   double step(const Edit& edit, const Journal& journal) {
     const double seconds = timed(replayer_, StepKind::step, edit, journal).seconds;
     const Resident resident = replayer_.resident();
-    most_bytes_ =
-        std::max(most_bytes_, resident.ray_trees + resident.sample_colors + resident.color_trees + resident.tunnels);
+    most_bytes_ = std::max(most_bytes_, resident.ray_trees + resident.sample_colors + resident.light_sums +
+                                            resident.color_trees + resident.tunnels);
     return seconds;
   }
   /// One after the other.

@@ -158,7 +158,7 @@ TEST_F(CacheFolder, a_cache_that_does_not_fit_is_in_the_way_by_its_own_name) {
   };
   make_cache();
   change_manifest([](Json& document) { document["relook"] = "cache/1"; });
-  expect_in_the_way("cache of another version (its format is cache/1, this program reads cache/5); --overwrite");
+  expect_in_the_way("cache of another version (its format is cache/1, this program reads cache/6); --overwrite");
   change_manifest([](Json& document) { document["content"]["arithmetic"]["embree"] = "3.12.1"; });
   expect_in_the_way("cache written with Embree 3.12.1, this is " + own_arithmetic().embree + "; --overwrite");
   fs::resize_file(at("c/MANIFEST.json"), 100);
@@ -360,7 +360,7 @@ TEST_F(CacheFolder, the_version_says_what_bits_depend_on) {
   const Arithmetic& own = own_arithmetic();
   const std::string version = relook({"--version"}).output;
   EXPECT_TRUE(version.starts_with("relook 0.1.0\narithmetic " + std::to_string(own.version) + ", Embree " + own.embree +
-                                  ", " + own.libc + ", " + own.instructions + "\ncache format 5\n"))
+                                  ", " + own.libc + ", " + own.instructions + "\ncache format 6\n"))
       << version;
   EXPECT_NE(own.embree, "none");
 }

@@ -80,7 +80,7 @@ TEST_F(Cli, inspect_knows_scene_cache_journal_and_run) {
   write_text(at("j.json"), kJournal);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
   EXPECT_EQ(parse_json(relook({"inspect", kScene, "--json"}).output, "")["lights"], 1);
-  EXPECT_EQ(parse_json(relook({"inspect", at("c"), "--json"}).output, "")["relook"], "cache/5");
+  EXPECT_EQ(parse_json(relook({"inspect", at("c"), "--json"}).output, "")["relook"], "cache/6");
   EXPECT_EQ(parse_json(relook({"inspect", at("run"), "--json"}).output, "")["relook"], "report/1");
   const Json steps = parse_json(relook({"inspect", at("j.json"), "--scene", kScene, "--json"}).output, "")["steps"];
   ASSERT_EQ(steps.size(), 3U);

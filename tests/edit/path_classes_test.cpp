@@ -14,7 +14,8 @@ struct Row {
 };
 
 std::string setting(const std::string& path, const std::string& value) {
-  return R"([{"op": "replace", "path": ")" + path + R"(", "value": )" + value + "}]";
+  const char* const op = path.ends_with("Texture") ? "add" : "replace";
+  return std::string(R"([{"op": ")") + op + R"(", "path": ")" + path + R"(", "value": )" + value + "}]";
 }
 
 constexpr const char* kRig = R"([

@@ -137,7 +137,10 @@ void CacheBytes::write(const std::filesystem::path& cache) {
     if (const Json scene = content.value("scene", Json()); scene.is_string() && scene.get<std::string>().size() == 32)
       identity.scene_hash = scene;
     Json options = Json::object();
-    for (const char* key : {"camera", "samples", "max_depth", "shadow_bits"}) options[key] = content.value(key, Json());
+    for (const char* key : {"camera", "samples", "max_depth", "shadow_bits", "integrator"})
+      options[key] = content.value(key, Json());
+    for (const char* key : {"diffuse_depth", "glossy_depth"})
+      if (content.contains(key)) options[key] = content[key];
     content["options"] = hash128(bytes_of(json_text(options)));
     identity.options_hash = content["options"];
   } else {

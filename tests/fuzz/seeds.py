@@ -297,7 +297,7 @@ def journal_files():
 # What earlier commands left -------------------------------------------------------------------------------------------
 def entry(step, **more):
     stem = "%04d" % 0
-    moves = {"ray_trees": 0, "sample_colors": 0, "color_trees": 0, "tunnels": 0, "total": 0}
+    moves = {"ray_trees": 0, "sample_colors": 0, "light_sums": 0, "color_trees": 0, "tunnels": 0, "total": 0}
     return dict({
         "step": step, "name": "s%d" % step, "class": "color" if step else "base", "reasons": ["r"], "drag_frame": None,
         "wedge_frame": None, "frame": "frames/%s.exr" % stem, "frame_hash": "0" * 32, "preview": "previews/%s.png" % stem,
@@ -306,7 +306,7 @@ def entry(step, **more):
         "command": "c", "verify": None, "verify_percent": None, "overlays": False, "resumed": False,
         "files": {"frames/%s.exr" % stem: {"hash": "h", "bytes": 300, "modified": 5}},
         "seconds": {key: 0.1 for key in ("classify", "select", "test", "update", "evaluate", "write", "total")},
-        "resident": {key: 9 for key in ("ray_paths", "ray_trees", "sample_colors", "color_trees", "groups", "tunnels", "total")},
+        "resident": {key: 9 for key in ("ray_paths", "ray_trees", "sample_colors", "light_sums", "color_trees", "groups", "tunnels", "total")},
         "evicted": moves, "rebuilt": moves, "reloaded": moves}, **more)
 
 
@@ -330,7 +330,7 @@ def progress(entries, **head):
 
 
 def note_files():
-    kinds = ("ray_trees", "sample_colors", "color_trees", "tunnels")
+    kinds = ("ray_trees", "sample_colors", "light_sums", "color_trees", "tunnels")
     for count, tiles in ((6, 2), (40, 5), (120, 9)):
         lines = ["%d %s %d %d %g %g" % (i // 4, kinds[i % 4], i * 7 % tiles, 100 + i * 13 % 900, 0.001 * (i % 5), 1 + i % 3)
                  for i in range(count)]

@@ -34,8 +34,8 @@ TEST(Resident, names_each_kind_of_bytes_apart) {
   EXPECT_EQ(last.tunnels, replayer.regions().tunnel_bytes());
   EXPECT_GT(last.tunnels, 0U);
   const std::uint64_t frame = replayer.image().frame.pixels.size() * sizeof(Rgba);
-  EXPECT_EQ(last.total, last.ray_paths + last.ray_trees + last.sample_colors + last.color_trees + last.groups +
-                            last.tunnels + frame);
+  EXPECT_EQ(last.total, last.ray_paths + last.ray_trees + last.sample_colors + last.light_sums + last.color_trees +
+                            last.groups + last.tunnels + frame);
 }
 
 TEST(Rebuilt, color_trees_are_those_that_had_left) {

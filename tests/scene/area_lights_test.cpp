@@ -1,5 +1,5 @@
-// EXT_lights_area (draft, glTF pull request 2525) in a file: one section of lights with those of KHR_lights_punctual, and
-// one sentence for each way to write it wrong.
+// EXT_lights_area (draft, glTF pull request 2525) in a file: one section of lights with those of KHR_lights_punctual,
+// and one sentence for each way to write it wrong.
 #include "import_values.h"
 #include "look_fixture.h"
 #include "scene/look/look_names.h"
@@ -16,7 +16,7 @@ class AreaLights : public ImportValues {
     gltf["extensionsUsed"] = {"EXT_lights_area"};
     gltf["extensions"]["EXT_lights_area"]["lights"] = lights;
     gltf["nodes"][0]["extensions"]["EXT_lights_area"] = reference;
-    return answer(gltf.dump(), "scene.gltf");
+    return answer(gltf.dump(), "inner/scene.gltf");
   }
 };
 
@@ -53,7 +53,7 @@ TEST_F(AreaLights, stand_beside_punctual_ones_with_names_of_their_own) {
 
 TEST_F(AreaLights, of_a_file_are_checked_at_their_place) {
   const Json one = {{"light", 0}};
-  EXPECT_EQ(with({{{"type", "rect"}, {"size", 2}, {"rect", {{"aspect", 0.5}}}}}, one).error, "");
+  EXPECT_EQ(with(Json::parse(R"([{"type": "rect", "size": 2, "rect": {"aspect": 0.5}}])"), one).error, "");
   const std::pair<Json, const char*> wrong[] = {
       {{{"size", 2}}, "\"type\" is missing"},
       {{{"type", "sphere"}}, "\"sphere\" is not one of rect, disk"},
@@ -65,7 +65,7 @@ TEST_F(AreaLights, of_a_file_are_checked_at_their_place) {
       {{{"type", "disk"}, {"color", {1, 1}}}, "expected an array of 3 numbers"},
   };
   for (const auto& [light, what] : wrong) {
-    const std::string error = with({light}, one).error;
+    const std::string error = with(Json::array({light}), one).error;
     EXPECT_NE(error.find(what), std::string::npos) << light << ": " << error;
     EXPECT_NE(error.find("/extensions/EXT_lights_area/lights/0"), std::string::npos) << error;
     EXPECT_EQ(error.find('\n'), std::string::npos);
@@ -73,29 +73,29 @@ TEST_F(AreaLights, of_a_file_are_checked_at_their_place) {
 }
 
 TEST_F(AreaLights, references_lead_to_lights) {
-  const Json lights = {{{"type", "rect"}}};
+  const Json lights = Json::parse(R"([{"type": "rect"}])");
   EXPECT_NE(with(lights, {{"light", 1}}).error.find("there is no light 1; the file has 1"), std::string::npos);
   EXPECT_NE(with(lights, {{"light", -1}}).error.find("there is no light -1"), std::string::npos);
   EXPECT_NE(with(lights, Json::object()).error, "");
   EXPECT_NE(with(lights, 3).error, "");
   EXPECT_NE(with(3, {{"light", 0}}).error, "");
-  EXPECT_NE(with({3}, {{"light", 0}}).error, "");
+  EXPECT_NE(with(Json::array({3}), {{"light", 0}}).error, "");
 }
 
 TEST_F(AreaLights, a_node_has_one_light) {
   Json gltf = text_scene();
-  gltf["extensions"]["EXT_lights_area"]["lights"] = {{{"type", "rect"}}};
-  gltf["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  gltf["extensions"]["EXT_lights_area"]["lights"] = Json::parse(R"([{"type": "rect"}])");
+  gltf["extensions"]["KHR_lights_punctual"]["lights"] = Json::parse(R"([{"type": "point"}])");
   gltf["nodes"][0]["extensions"] = {{"EXT_lights_area", {{"light", 0}}}, {"KHR_lights_punctual", {{"light", 0}}}};
-  const std::string error = answer(gltf.dump(), "scene.gltf").error;
+  const std::string error = answer(gltf.dump(), "inner/scene.gltf").error;
   EXPECT_NE(error.find("/nodes/0/extensions/EXT_lights_area"), std::string::npos) << error;
 }
 
 TEST_F(AreaLights, punctual_ones_are_no_areas) {
   Json gltf = text_scene();
-  gltf["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "rect"}}};
+  gltf["extensions"]["KHR_lights_punctual"]["lights"] = Json::parse(R"([{"type": "rect"}])");
   gltf["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0;
-  const std::string error = answer(gltf.dump(), "scene.gltf").error;
+  const std::string error = answer(gltf.dump(), "inner/scene.gltf").error;
   EXPECT_NE(error.find("\"rect\" is not one of point, spot, directional"), std::string::npos) << error;
 }
 

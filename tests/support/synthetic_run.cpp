@@ -37,7 +37,7 @@ SyntheticRun::SyntheticRun(std::filesystem::path folder, std::uint32_t width, st
           {"camera", "Camera"},
           {"resolution", {width, height}},
           {"samples", 1},
-          {"options", {{"max_depth", 6}}},
+          {"options", {{"integrator", "whitted"}, {"max_depth", 6}}},
           {"machine", {{"threads", 2}, {"cpu", "unknown"}}},
           {"full_render_seconds", 0.5},
           {"cache_bytes", {{"total", 1000}}},
@@ -74,7 +74,8 @@ Json& SyntheticRun::add_linked(std::size_t step, std::size_t to) {
 
 Json& SyntheticRun::add_entry(std::size_t step, const std::string& stem, bool is_within) {
   const double seconds = 0.001 * static_cast<double>(1 + step * 37 % 100);
-  const Json moves{{"ray_trees", 0}, {"sample_colors", 0}, {"color_trees", 0}, {"tunnels", 0}, {"total", 0}};
+  const Json moves{{"ray_trees", 0},   {"sample_colors", 0}, {"light_sums", 0},
+                   {"color_trees", 0}, {"tunnels", 0},       {"total", 0}};
   entries.push_back({{"step", step},
                      {"name", "step " + std::to_string(step)},
                      {"class", step == 0 ? "base" : "color"},
@@ -104,6 +105,7 @@ Json& SyntheticRun::add_entry(std::size_t step, const std::string& stem, bool is
                       {{"ray_paths", 123456},
                        {"ray_trees", 2345678 + step},
                        {"sample_colors", 2345678},
+                       {"light_sums", 0},
                        {"color_trees", 1111111},
                        {"groups", 234567},
                        {"tunnels", 1000000},

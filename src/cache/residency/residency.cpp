@@ -14,6 +14,8 @@ std::string_view kind_name(PieceKind kind) {
       return "ray_trees";
     case PieceKind::sample_colors:
       return "sample_colors";
+    case PieceKind::light_sums:
+      return "light_sums";
     case PieceKind::tunnels:
       return "tunnels";
   }

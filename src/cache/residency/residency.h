@@ -18,8 +18,8 @@
 
 namespace relook {
 
-enum class PieceKind : std::uint8_t { ray_trees, sample_colors, tunnels };
-inline constexpr std::size_t kPieceKinds = 3;
+enum class PieceKind : std::uint8_t { ray_trees, sample_colors, light_sums, tunnels };
+inline constexpr std::size_t kPieceKinds = 4;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
 [[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 

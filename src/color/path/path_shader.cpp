@@ -43,9 +43,9 @@ struct PathShader::Impl {
   }
 
   void shade(const TreeBlock& trees, std::uint32_t samples, TermSign sign, TileSums& tile,
-             std::span<const std::uint8_t> wanted_sums) {
+             const Wanted& asked) {
     block = &trees;
-    wanted = wanted_sums;
+    wanted = asked;
     samples_of_pixel = samples;
     sums = &tile;
     is_added = sign == TermSign::add;
@@ -56,7 +56,12 @@ struct PathShader::Impl {
   }
 
  private:
-  [[nodiscard]] bool is_wanted(std::uint32_t sum) const { return wanted.empty() || wanted[sum] != 0; }
+  [[nodiscard]] bool is_whole(const RayNode& node) const {
+    return wanted.sums.empty() || (!wanted.whole.empty() && wanted.whole[node.sample] != 0);
+  }
+  [[nodiscard]] bool is_wanted(std::uint32_t sum, const RayNode& node) const {
+    return is_whole(node) || wanted.sums[sum] != 0;
+  }
 
   void put(std::uint32_t sum, const RayNode& node, const Color& term) {
     if (is_black(term)) return;
@@ -164,10 +169,9 @@ struct PathShader::Impl {
   }
 
   void add_own_terms() {
-    const bool counts_coverage = wanted.empty();
     for (std::uint32_t i = 0; i < block->nodes.size(); ++i) {
       const RayNode& node = block->nodes[i];
-      if (counts_coverage && !node.object.is_none() && open_shares[i] > 0) add_coverage(node, i);
+      if (is_whole(node) && !node.object.is_none() && open_shares[i] > 0) add_coverage(node, i);
       if (is_black(weights[i])) continue;
       for (const std::uint32_t place : shapes) add_crossed(node, i, place);
       if (node.object.is_none())
@@ -189,7 +193,7 @@ struct PathShader::Impl {
   void add_crossed(const RayNode& node, std::uint32_t i, std::uint32_t place) {
     const std::uint32_t sum = places.of_light[place];
     const Light& light = scene.scene().light(scene.light_order()[place]);
-    if (!is_wanted(sum) || !may_meet(node, light)) return;
+    if (!is_wanted(sum, node) || !may_meet(node, light)) return;
     if (const auto radiance = crossed(node, scene.light(place), light)) put(sum, node, weights[i] * *radiance);
   }
 
@@ -197,16 +201,16 @@ struct PathShader::Impl {
   void add_surroundings(const RayNode& node, std::uint32_t i) {
     const PathState& path = node.ray.path;
     if (path.is_eye && scene.scene().environment.background) {
-      if (is_wanted(places.background)) put(places.background, node, weights[i] * background(node.ray.direction));
+      if (is_wanted(places.background, node)) put(places.background, node, weights[i] * background(node.ray.direction));
       return;
     }
     const RayLight& light = scene.light(suns);
     const std::uint32_t sun_sum = places.of_light[suns];
-    if (!is_wanted(places.sky) && !is_wanted(sun_sum)) return;
+    if (!is_wanted(places.sky, node) && !is_wanted(sun_sum, node)) return;
     const Direction way = to_image(node.ray.direction, light.sine, light.cosine);
     const EnvironmentLight::Parts parts = scene.environment()->parts(way);
-    if (is_wanted(places.sky)) put(places.sky, node, weights[i] * parts.sky);
-    if (is_black(parts.suns) || !is_wanted(sun_sum)) return;
+    if (is_wanted(places.sky, node)) put(places.sky, node, weights[i] * parts.sky);
+    if (is_black(parts.suns) || !is_wanted(sun_sum, node)) return;
     if (!may_meet(node, scene.scene().light(scene.light_order()[suns]))) return;
     const float weight = path.density > 0 ? met_weight(node, light, scene.environment()->density(way)) : 1.0F;
     put(sun_sum, node, weights[i] * parts.suns * weight);
@@ -224,10 +228,10 @@ struct PathShader::Impl {
 
   void add_hit(const RayNode& node, std::uint32_t i) {
     const HitColumns& own = columns[i];
-    if (is_wanted(places.ambient)) put(places.ambient, node, weights[i] * own.ambient);
-    if (is_wanted(places.unlit)) put(places.unlit, node, weights[i] * own.unlit);
+    if (is_wanted(places.ambient, node)) put(places.ambient, node, weights[i] * own.ambient);
+    if (is_wanted(places.unlit, node)) put(places.unlit, node, weights[i] * own.unlit);
     const std::uint32_t place = emission_of[scene.scene().object(node.object).material.index()];
-    if (place == kNoNode || !is_wanted(places.of_light[place])) return;
+    if (place == kNoNode || !is_wanted(places.of_light[place], node)) return;
     const Light& light = scene.scene().light(scene.light_order()[place]);
     if (!may_meet(node, light)) return;
     const PathState& path = node.ray.path;
@@ -258,7 +262,7 @@ struct PathShader::Impl {
       if (node.object.is_none() || is_black(weights[i])) continue;
       for (std::uint32_t place = 0; place < places.of_light.size(); ++place) {
         const ShadowState state = block->lights[node.first_light + place].state;
-        if ((state != ShadowState::open && state != ShadowState::filtered) || !is_wanted(places.of_light[place]))
+        if ((state != ShadowState::open && state != ShadowState::filtered) || !is_wanted(places.of_light[place], node))
           continue;
         const auto term = light_term(scene, *block, i, place);
         if (!term) continue;
@@ -294,7 +298,7 @@ struct PathShader::Impl {
   std::uint32_t samples_of_pixel = 1;
   TileSums* sums = nullptr;
   bool is_added = true;
-  std::span<const std::uint8_t> wanted;
+  Wanted wanted;
 
   std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by signature: of a program
   std::vector<BoundPathProgram> bound;
@@ -314,7 +318,7 @@ PathShader::PathShader(const ColorScene& scene, PathPrograms& programs, const Su
 PathShader::~PathShader() = default;
 
 void PathShader::shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums,
-                       std::span<const std::uint8_t> wanted) {
+                       const Wanted& wanted) {
   impl_->shade(block, samples, sign, sums, wanted);
 }
 

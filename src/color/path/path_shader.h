@@ -7,7 +7,7 @@
 
 #include "color/path/path_programs.h"
 #include "color/path/sum_places.h"
-#include "frame/sums/tile_sums.h"
+#include "light/sums/tile_sums.h"
 
 namespace relook {
 
@@ -18,10 +18,13 @@ class PathShader {
  public:
   PathShader(const ColorScene& scene, PathPrograms& programs, const SumPlaces& places);
   ~PathShader();
-  /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel. `wanted`: by sum,
-  /// which of them are asked for; empty: all.
-  void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums,
-             std::span<const std::uint8_t> wanted = {});
+  /// Which terms are asked for: of `whole` samples all, of others those of `sums`.
+  struct Wanted {
+    std::span<const std::uint8_t> sums;   // by sum; empty: all
+    std::span<const std::uint8_t> whole;  // by sample of the tile; empty: none
+  };
+  /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel.
+  void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums, const Wanted& wanted = {});
 
  private:
   struct Impl;

@@ -98,6 +98,7 @@ struct RayChange {
 enum class TreeChange : std::uint8_t {
   none,
   counters,  // only what stands before lights that were blocked and still are: the path, no colour
+  lights,    // only lights that are new, gone or elsewhere
   all,       // a node, hit, filter or shadow state, or a light that reaches a node has moved
 };
 

@@ -25,7 +25,7 @@ struct SpawnedRay {
   Meeting behind{};           // the hit that it goes straight on from; t NaN: not known; object none: no such hit
   float travelled = 0;        // metres from the origin to that hit
   float travelled_slack = 0;  // distance_slack() there
-  PathState path;
+  PathState path{};
 
   [[nodiscard]] bool goes_on() const { return !behind.object.is_none(); }
   [[nodiscard]] bool is_same_way(const SpawnedRay& other) const {

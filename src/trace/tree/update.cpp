@@ -113,7 +113,7 @@ class Updater {
     for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
       const std::uint32_t old = change_.old_light_index[light];
       const ShadowState before = old == kNoNode ? ShadowState::facing_away : shadow_state(node.lights, old);
-      update_light({index, light, {}, before, old == kNoNode ? 0 : old},
+      update_light({index, light, {}, before, old == kNoNode ? 0 : old, old == kNoNode},
                    touch.touches(before == ShadowState::blocked, light));
     }
     if (change_.lights_changed) note_lost_lights(node);
@@ -126,7 +126,7 @@ class Updater {
       if (old != kNoNode) kept[old] = true;
     for (std::size_t old = 0; old < kept.size(); ++old)
       if (!kept[old] && shadow_state(node.lights, old) != ShadowState::facing_away) {
-        note(TreeChange::all);
+        note(TreeChange::lights);
         ++counters_.culled.dropped;
       }
   }
@@ -138,6 +138,7 @@ class Updater {
     ShadowSegment segment;  // to it
     ShadowState before;     // as stored
     std::size_t old;        // place in the stored light order
+    bool is_new;            // it has none
   };
 
   /// `touched`: may the selection cross the segment, or did it so before?
@@ -149,7 +150,7 @@ class Updater {
       return;
     }
     if (l.before == ShadowState::facing_away) {  // a new or moved light, or a surface that gathered none
-      note(TreeChange::all);
+      note(l.is_new ? TreeChange::lights : TreeChange::all);
       grower_.trace_light(l.index, l.light, l.segment, counters_);
       return;
     }

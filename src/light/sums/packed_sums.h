@@ -1,4 +1,4 @@
-// The sums of light of one tile (frame/sums/tile_sums.h) in as few bytes as they need: what is kept in memory between
+// The sums of light of one tile (light/sums/tile_sums.h) in as few bytes as they need: what is kept in memory between
 // changes, and on disk. All values of a sum are stored in the same number of bytes, without the low zero bytes that
 // they have in common; a sum without light takes none. Equal sums have equal bytes.
 #pragma once
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/files.h"
-#include "frame/sums/tile_sums.h"
+#include "light/sums/tile_sums.h"
 
 namespace relook {
 
@@ -28,8 +28,8 @@ class PackedSums {
   /// `shapes`: one a sum and that of the coverage. `values`: as values(). Throws InputError, without a file, unless
   /// they are those of a tile of so many pixels as pack() makes them.
   [[nodiscard]] static PackedSums of_parts(std::vector<SumShape> shapes, std::size_t pixels, BytesView values);
-  /// Reads to_bytes(). Throws as of_parts(), also if there is another number of sums.
-  [[nodiscard]] static PackedSums from_bytes(BytesView bytes, std::size_t sums, std::size_t pixels);
+  /// Reads to_bytes(). Throws as of_parts().
+  [[nodiscard]] static PackedSums from_bytes(BytesView bytes);
 
   [[nodiscard]] TileSums unpack() const;
   /// As TileSums::remapped().
@@ -58,7 +58,7 @@ class PackedSums {
   [[nodiscard]] std::span<const SumShape> shapes() const { return shapes_; }
   /// Value by value, little-endian: pixel by pixel its three channels, sum by sum, then the coverage.
   [[nodiscard]] BytesView values() const { return BytesView(values_).first(values_.size() - padding()); }
-  /// Shapes and values.
+  /// Numbers of sums and pixels, shapes, values. Requires: not empty().
   [[nodiscard]] Bytes to_bytes() const;
   /// Memory that it takes.
   [[nodiscard]] std::size_t bytes() const;

@@ -1,5 +1,5 @@
 // The sums of light of one tile while terms come and go: every sum has three channels a pixel, and beside the sums
-// stands the coverage. All is exact (frame/sums/fixed.h), so terms may come in any order, and what was added and is
+// stands the coverage. All is exact (light/sums/fixed.h), so terms may come in any order, and what was added and is
 // subtracted again leaves no trace. A sum that no light has reached takes no memory.
 #pragma once
 #include <array>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "frame/sums/fixed.h"
+#include "light/sums/fixed.h"
 
 namespace relook {
 

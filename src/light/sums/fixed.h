@@ -1,6 +1,6 @@
 // Numbers on one fixed grid, so that sums of light are exact: they have no order, and what has been added can be taken
-// away again. Two's complement in 128 bits, a step is 2^-80. Terms are at most 2^30, so a sum of 2^17 of them holds;
-// beyond that it wraps, and still comes back.
+// away again. Two's complement in 128 bits, a step is 2^-80. Terms are at most 2^30, so a sum of fewer than 2^17 of
+// them holds; beyond that it wraps, and still comes back.
 #pragma once
 #include <array>
 #include <bit>
@@ -30,8 +30,8 @@ inline constexpr int kFixedStep = -80;          // its power of two
 inline constexpr float kLargestTerm = 0x1p30F;  // of either sign
 
 namespace fixed_bits {
-/// The exponent bits of the first floats that are multiples of the step, and of the largest term.
-inline constexpr std::uint32_t kFirstWhole = 127 + 23 + kFixedStep, kLargest = 127 + 30;
+/// The exponent bits of the first floats that are multiples of the step.
+inline constexpr std::uint32_t kFirstWhole = 127 + 23 + kFixedStep;
 static_assert(kFirstWhole == 70);
 
 /// By what a mantissa is multiplied, by the sign and the exponent bits of a float: a power of two of either sign. 0 for

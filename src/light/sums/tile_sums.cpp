@@ -1,4 +1,4 @@
-#include "frame/sums/tile_sums.h"
+#include "light/sums/tile_sums.h"
 
 #include <algorithm>
 

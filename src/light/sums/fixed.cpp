@@ -1,4 +1,4 @@
-#include "frame/sums/fixed.h"
+#include "light/sums/fixed.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "frame/sums/packed_sums.h"
+#include "light/sums/packed_sums.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/tiles.h"
 
 namespace relook {
 namespace {
@@ -142,8 +143,11 @@ std::uint64_t PackedSums::clamped() const {
 }
 
 Bytes PackedSums::to_bytes() const {
-  Bytes bytes;
-  bytes.reserve(shapes_.size() * kShapeBytes + values().size());
+  require(!empty(), "what is packed is there");
+  const std::array<std::uint64_t, 2> counts{sums(), pixels_};
+  const BytesView head = std::as_bytes(std::span(counts));
+  Bytes bytes(head.begin(), head.end());
+  bytes.reserve(head.size() + shapes_.size() * kShapeBytes + values().size());
   for (const SumShape& shape : shapes_) {
     bytes.push_back(std::byte{shape.dropped});
     bytes.push_back(std::byte{shape.width});
@@ -154,8 +158,14 @@ Bytes PackedSums::to_bytes() const {
   return bytes;
 }
 
-PackedSums PackedSums::from_bytes(BytesView bytes, std::size_t sums, std::size_t pixels) {
-  if (bytes.size() / kShapeBytes < sums + 1) refuse("fewer sums of light than there are lights");
+PackedSums PackedSums::from_bytes(BytesView bytes) {
+  std::array<std::uint64_t, 2> counts{};
+  if (bytes.size() < sizeof counts) refuse("sums of light that are cut short");
+  std::memcpy(counts.data(), bytes.data(), sizeof counts);
+  bytes = bytes.subspan(sizeof counts);
+  const auto [sums, pixels] = counts;
+  if (sums >= bytes.size() / kShapeBytes) refuse("sums of light that are cut short");
+  if (pixels > std::size_t{kTileSize} * kTileSize) refuse("sums of light of more pixels than a tile has");
   std::vector<SumShape> shapes(sums + 1);
   for (SumShape& shape : shapes) {
     shape.dropped = std::to_integer<std::uint8_t>(bytes[0]);

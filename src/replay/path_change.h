@@ -1,0 +1,34 @@
+// What one edit means to the sums of light of a frame of the path integrator: which stay, which are worked out afresh,
+// and which samples' terms change in all of them. The scene delta in; what path_tile.h carries out, out.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "color/color_scene.h"
+#include "replay/change.h"
+#include "scene/light_sums.h"
+
+namespace relook {
+
+struct PathChange {
+  explicit PathChange(RayScene before) : rays_before(std::move(before)) {}
+
+  StepChange step;
+  std::vector<LightSum> sums;              // after the edit
+  std::vector<std::uint32_t> old_of_new;   // by sum: its place before; kNewSum
+  std::vector<std::uint8_t> afresh;        // by sum: all its terms may be others; they follow from the trees
+  bool recolored = false;                  // a sum's colour is another one, or sums have come or gone
+  std::vector<MaterialId> shaded;          // materials whose users' terms change
+  std::shared_ptr<const Scene> scene_before;
+  RayScene rays_before;
+
+  [[nodiscard]] bool any_afresh() const;
+  /// Must trees be looked at at all?
+  [[nodiscard]] bool touches_samples() const;
+};
+
+/// `rays_before`, `lights_before`: as before the edit; `scene`, `rays`: as after it.
+[[nodiscard]] PathChange find_path_change(const RayScene& rays_before, const std::vector<LightId>& lights_before,
+                                          const Scene& scene, const RayScene& rays, const SceneDelta& delta);
+
+}  // namespace relook

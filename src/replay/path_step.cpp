@@ -1,0 +1,140 @@
+#include "replay/path_step.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "edit/apply.h"
+#include "image/image_pieces.h"
+#include "replay/path_tile.h"
+
+namespace relook {
+namespace {
+
+/// Which paths an edit may reach.
+class PathSelection {
+ public:
+  PathSelection(const StoredImage& stored, const PathChange& change, const Scene& scene)
+      : stored_(stored), change_(change), scene_(scene) {}
+
+  void select(PathPass& pass) const {
+    const std::size_t paths = stored_.image().paths.size();
+    const bool updates_all = change_.step.touches_segments() || change_.step.rays.lights_changed;
+    pass.update_path.assign(paths, updates_all ? 1 : 0);
+    pass.shade_path.assign(paths, 0);
+    const std::vector<std::uint8_t>& flags = change_.step.rays.objects;
+    for (std::uint32_t object = 0; object < flags.size(); ++object)
+      if (flags[object] != 0) flag(ObjectId(object), pass.update_path);
+    for (const ObjectId object : change_.step.colors.reassigned) flag(object, pass.shade_path);
+    if (change_.shaded.empty()) return;
+    for (std::uint32_t object = 0; object < scene_.objects.size(); ++object)
+      if (std::ranges::find(change_.shaded, scene_.objects[object].material) != change_.shaded.end())
+        flag(ObjectId(object), pass.shade_path);
+  }
+
+ private:
+  void flag(ObjectId object, std::vector<std::uint8_t>& paths) const {
+    for (const PathId path : stored_.index().paths_of(object)) paths[path.index()] = 1;
+  }
+
+  const StoredImage& stored_;
+  const PathChange& change_;
+  const Scene& scene_;
+};
+
+void count(const PathTileResult& tile, Counters& counters) {
+  counters.samples_affected += tile.samples;
+  counters.color_trees_evaluated += tile.samples;
+  counters.ray_tests += tile.counters.ray_tests;
+  counters.culled += tile.counters.culled;
+  counters.ray_tests_culled += tile.counters.culled.sum();
+  counters.ray_updates += tile.counters.ray_updates;
+  counters.shadow_updates += tile.counters.shadow_updates;
+  counters.object_rays += tile.counters.object_rays;
+}
+
+/// Brings trees and sums up to date, tile by tile.
+class PathUpdate {
+ public:
+  PathUpdate(ReplayParts& parts, PathChange& change) : parts_(parts), stored_(parts.stored), change_(change) {}
+
+  void run(StepResult& result) {
+    const ColorScene before(change_.rays_before, *change_.scene_before);
+    const TilePrograms programs_before(before), programs_after(parts_.rays);
+    const Tracer::TopLevel* level = nullptr;
+    if (change_.step.touches_rays() || misses_hits()) {
+      level = &parts_.current_level({});
+      parts_.residency.require_floor();
+      build_selection(change_.step, parts_.rays, {}, parts_.level->tracer());
+    }
+    const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
+    const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0);
+    PathPass pass{change_, stored_.image(), programs_before, programs_after, grow_before, grow_after, {}, {}};
+    PathSelection(stored_, change_, parts_.state.scene()).select(pass);
+    std::vector<PathTileResult> results(stored_.image().trees.size());
+    parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
+    std::vector<NewSamples> fresh;
+    for (PathTileResult& tile : results) {
+      count(tile, result.counters);
+      fresh.push_back(std::move(tile.fresh));
+    }
+    if (change_.step.touches_rays()) stored_.keep_paths(fresh, grow_after, change_.step.rays.lights_changed);
+  }
+
+ private:
+  [[nodiscard]] bool misses_hits() const {
+    for (std::size_t tile = 0; tile < stored_.image().trees.size(); ++tile) {
+      const auto lease = parts_.residency.use(PieceKind::ray_trees, tile);
+      if (stored_.misses_hits(tile)) return true;
+    }
+    return false;
+  }
+
+  void update(const PathPass& pass, std::size_t tile, PathTileResult& result) {
+    const auto trees = parts_.residency.use(PieceKind::ray_trees, tile);
+    {
+      const auto sums = parts_.residency.use(PieceKind::light_sums, tile);
+      result = has_hits(stored_.image().trees[tile]) ? update_path_tile(pass, tile, stored_.image().light_sums[tile])
+                                                     : trace_path_tile(pass, tile);
+    }
+    stored_.keep_hits(result.fresh);
+    if (result.has_changed) stored_.keep_sums(tile, std::move(result.sums));
+    result.sums = {};
+  }
+
+  ReplayParts& parts_;
+  StoredImage& stored_;
+  PathChange& change_;
+};
+
+void refresh_pixels(StoredImage& stored, std::span<const LightSum> sums, StepResult& result) {
+  const std::vector<LightColor> colors = colors_of(sums);
+  std::vector<TileMask> changed(stored.image().trees.size());
+  parallel_for(changed.size(), [&](std::size_t tile) { stored.refresh_from_sums(tile, colors, changed[tile]); });
+  for (std::size_t tile = 0; tile < changed.size(); ++tile) result.changed_pixels.add(tile, changed[tile]);
+}
+
+}  // namespace
+
+StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+  StepResult result;
+  StopWatch watch;
+  parts.residency.begin_change();
+  const RayScene rays_before = parts.rays;
+  const SceneDelta delta = apply_edit(parts.state, edit, file, folder);
+  const Scene& scene = parts.state.scene();
+  result.classification = classify(scene, delta);
+  result.counters.samples_total = parts.stored.samples();
+  parts.rays = ColorScene(rays_before.after(scene, delta), scene);
+  PathChange change = find_path_change(rays_before, parts.stored.lights(), scene, parts.rays, delta);
+  const std::vector<ObjectId> changed = selection_of(change.step);
+  if (parts.level) parts.level->note_changed(changed);
+  parts.objects.go_on(parts.rays, changed);
+  watch.lap(result.seconds.classify);
+  if (change.touches_samples()) PathUpdate(parts, change).run(result);
+  watch.lap(change.step.touches_rays() ? result.seconds.update : result.seconds.evaluate);
+  if (change.touches_samples() || change.recolored) refresh_pixels(parts.stored, change.sums, result);
+  watch.lap(result.seconds.evaluate);
+  return result;
+}
+
+}  // namespace relook

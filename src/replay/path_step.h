@@ -1,0 +1,14 @@
+// A step of a replay under the path integrator: edits of lights' colours cost pixels, edits of one light its own rays, all
+// others the samples that they reach. The frame afterwards equals render() of the edited scene, bit for bit.
+#pragma once
+#include "edit/apply.h"
+#include "replay/replay_parts.h"
+#include "replay/step_result.h"
+
+namespace relook {
+
+/// Applies one edit. Throws InputError with everything as before.
+[[nodiscard]] StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file,
+                                   const std::filesystem::path& folder);
+
+}  // namespace relook

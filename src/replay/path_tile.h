@@ -1,0 +1,37 @@
+// One tile after an edit, under the path integrator: ray trees brought up to date, terms of light that no longer hold
+// taken out of its sums, new ones added: base minus old plus new is the full render's, bit for bit. Tiles can be done at
+// the same time.
+#pragma once
+#include "image/tile_light.h"
+#include "replay/path_change.h"
+#include "replay/replay_parts.h"
+#include "trace/tree/grow.h"
+
+namespace relook {
+
+/// What all tiles of a step have in common.
+struct PathPass {
+  const PathChange& change;
+  const Image& image;
+  const TilePrograms& before;            // of the scene before the edit
+  const TilePrograms& after;             // and after it
+  const GrowScene& grow_before;
+  const GrowScene& grow_after;
+  std::vector<std::uint8_t> update_path;  // by path: its trees may change, or must be packed anew
+  std::vector<std::uint8_t> shade_path;   // by path: its terms change though its tree does not
+};
+
+struct PathTileResult {
+  NewSamples fresh;  // trees alone
+  PackedSums sums;   // of the tile as it is now
+  bool has_changed = false;
+  std::uint64_t samples = 0;  // whose terms have been worked out
+  GrowCounters counters;
+};
+
+/// `sums`: of the tile before the edit. Requires: the tile's hits are there.
+[[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums);
+/// The same of a tile whose hits are not: all is traced again.
+[[nodiscard]] PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile);
+
+}  // namespace relook
