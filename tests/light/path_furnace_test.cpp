@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "color/physics_scenes.h"
 #include "path_albedo.h"
 #include "path_studio.h"
-#include "physics_scenes.h"
 
 namespace relook {
 namespace {
@@ -139,7 +139,7 @@ TEST(PathFurnace, a_ball_of_glass_is_next_to_invisible) {
   scene.look_at(Point(0, 0, 6), Point(0, 0, 0), 14, 16, 16);
   const Measured seen = measured(colors_of(scene.frame(64, 12)));
   expect_no_gain(seen, "ball of glass");
-  EXPECT_GT(seen.mean.x, 0.98);
+  EXPECT_GT(seen.mean.x, 0.95);
 }
 
 TEST(PathFurnace, no_ball_of_any_material_shines) {
