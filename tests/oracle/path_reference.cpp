@@ -327,18 +327,16 @@ Vec PathReference::radiance(const Ray& ray, Random& random) const {
   return sum;
 }
 
-std::vector<PathReference::Pixel> PathReference::pixels(unsigned side, unsigned rounds, std::uint64_t seed) const {
+std::vector<PathReference::Pixel> PathReference::pixels(unsigned samples, std::uint64_t seed) const {
   const Camera& camera = scene_.camera;
   Random random(seed);
   std::vector<Pixel> result;
-  const double n = double{1} * side * side * rounds;
   for (std::uint32_t y = 0; y < camera.height; ++y) {
     for (std::uint32_t x = 0; x < camera.width; ++x) {
       Vec sum = kBlack, squares = kBlack;
-      for (unsigned k = 0; k < side * side * rounds; ++k) {
-        const auto at = [&](unsigned i) { return (static_cast<float>(i) + 0.5F) / static_cast<float>(side); };
-        const CameraRay from = camera_ray(camera, static_cast<float>(x) + at(k % side),
-                                          static_cast<float>(y) + at(k / side % side));
+      for (unsigned k = 0; k < samples; ++k) {
+        const double across = x + number(random), down = y + number(random);
+        const CameraRay from = camera_ray(camera, static_cast<float>(across), static_cast<float>(down));
         Ray ray{};
         ray.origin = Vec(from.origin);
         ray.way = Vec(from.direction).normalized();
@@ -346,8 +344,8 @@ std::vector<PathReference::Pixel> PathReference::pixels(unsigned side, unsigned 
         sum += value;
         squares += value * value;
       }
-      const Vec mean = sum / n;
-      result.push_back({mean, (squares / n - mean * mean) / (n - 1)});
+      const Vec mean = sum / samples;
+      result.push_back({mean, (squares / samples - mean * mean) / (samples - 1.0)});
     }
   }
   return result;
