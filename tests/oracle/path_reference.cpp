@@ -98,11 +98,20 @@ PathReference::Surface PathReference::surface_at(const Found& found, const Vec& 
   if (world.determinant() < 0) front = -front;
   s.inside = front.dot(way) > 0;
   s.ng = s.n = s.inside ? -front : front;
+  s.lift = kBlack;
   if (!mesh.normals.empty()) {
     const auto& [i, j, k] = mesh.triangles[triangle.primitive];
-    const Vec local = Vec(mesh.normals[i]) * (1 - found.u - found.v) + Vec(mesh.normals[j]) * found.u +
-                      Vec(mesh.normals[k]) * found.v;
-    world.inverse().transposed().multDirMatrix(local, s.n);
+    const std::uint32_t corners[] = {i, j, k};
+    const double weights[] = {1 - found.u - found.v, found.u, found.v};
+    Vec at = kBlack, normal = kBlack, lift = kBlack;
+    for (int c = 0; c < 3; ++c) at += Vec(mesh.positions[corners[c]]) * weights[c];
+    for (int c = 0; c < 3; ++c) {
+      const Vec one = Vec(mesh.normals[corners[c]]) * (s.inside ? -1.0 : 1.0);
+      normal += one * weights[c];
+      lift += one * (weights[c] * std::max((Vec(mesh.positions[corners[c]]) - at).dot(one), 0.0));
+    }
+    world.multDirMatrix(lift, s.lift);
+    world.inverse().transposed().multDirMatrix(normal, s.n);
     s.n.normalize();
     if (s.n.dot(s.ng) < 0) s.n = -s.n;
   }
@@ -156,7 +165,6 @@ Vec PathReference::crossed(const Ray& ray, double end) const {
 }
 
 Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind, Random& random) const {
-  const Vec origin = s.p + s.ng * kOffset;
   Vec way, arriving;  // radiance over the density of the sample, or irradiance
   double distance = 1e30;
   if (light.kind == LightKind::suns) return kBlack;
@@ -214,7 +222,9 @@ Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind
   if (!is_sized || Surface::is_wide(s.alpha)) value += s.specular(way);
   if (!is_sized || Surface::is_wide(s.coat_alpha)) value += s.coating(way);
   const Vec light_there = value * arriving;
-  return is_black(light_there) ? kBlack : light_there * passed(origin, way, distance);
+  if (is_black(light_there)) return kBlack;
+  const Vec origin = s.p + s.lift * std::clamp(1 - s.ng.dot(way) / 0.1, 0.0, 1.0) + s.ng * kOffset;
+  return light_there * passed(origin, way, distance);
 }
 
 Vec PathReference::gathered(const Surface& s, const Ray& ray, Random& random) const {
