@@ -1,0 +1,364 @@
+#include "path_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "path_reference_surface.h"
+
+namespace relook {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kOffset = 1e-6;
+const Vec kBlack(0, 0, 0);
+
+double number(std::mt19937_64& random) { return static_cast<double>(random() >> 11U) * 0x1p-53; }
+Vec normal_of(const WorldTriangle& t) { return (t.b - t.a).cross(t.c - t.a); }
+bool is_black(const Vec& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
+Vec radiance_of(const Light& light) {
+  double scale = light.intensity;
+  if (light.radius > 0) scale /= kPi * light.radius * light.radius;
+  if (light.angle > 0) scale /= kPi * std::pow(std::sin(light.angle / 2.0), 2);
+  return color_of(light.color) * scale;
+}
+bool has_shape(const Light& light) {
+  return light.radius > 0 || light.angle > 0 || traits_of(light.kind).has_size;
+}
+double share_of(const Light& light, const Vec& at) {
+  if (!traits_of(light.kind).has_radius) return 1;
+  const Vec way = Vec(light.position) - at;
+  const double window = std::max(1 - std::pow(way.length() / light.range, 4), 0.0);
+  if (!traits_of(light.kind).has_cone) return window;
+  const double outer = std::cos(double{light.outer_cone}), inner = std::cos(double{light.inner_cone});
+  const double cosine = -Vec(light.direction).dot(way.normalized());
+  return window * std::pow(std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0), 2);
+}
+
+/// Where a ray meets a light's shape from the side that shines.
+std::optional<double> crossing(const Light& light, const Vec& origin, const Vec& way) {
+  if (light.angle > 0)
+    return -Vec(light.direction).dot(way) >= std::cos(light.angle / 2.0) ? std::optional(1e30) : std::nullopt;
+  const Vec to = Vec(light.position) - origin;
+  if (light.radius > 0) {
+    const double along = to.dot(way), left = double{light.radius} * light.radius - (to - way * along).length2();
+    if (left < 0) return std::nullopt;
+    const double half = std::sqrt(left), t = to.length() > light.radius ? along - half : along + half;
+    return t > 0 ? std::optional(t) : std::nullopt;
+  }
+  const double facing = Vec(light.direction).dot(way);
+  if (facing >= 0) return std::nullopt;
+  const double t = Vec(light.direction).dot(to) / facing;
+  const Vec at = way * t - to, right(light.right), up(light.up);
+  const double x = at.dot(right) / right.length2(), y = at.dot(up) / up.length2();
+  const bool is_inside = light.kind == LightKind::disk ? x * x + y * y <= 1 : std::max(std::fabs(x), std::fabs(y)) <= 1;
+  return t > 0 && is_inside ? std::optional(t) : std::nullopt;
+}
+
+}  // namespace
+
+PathReference::PathReference(const Scene& scene, unsigned max_depth, unsigned glossy_depth)
+    : scene_(scene), max_depth_(max_depth), glossy_depth_(glossy_depth) {
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].alive) continue;
+    for (const WorldTriangle& triangle : world_triangles(scene, i)) triangles_.push_back(triangle);
+  }
+}
+
+bool PathReference::is_met(const WorldTriangle& triangle, const Vec& way) const {
+  const Object& object = scene_.objects[triangle.object];
+  const double side = normal_of(triangle).dot(way);
+  const bool is_back = (Imath::M44d(object.to_world).determinant() < 0 ? -side : side) > 0;
+  return !is_back || scene_.material(object.material).double_sided;
+}
+
+PathReference::Found PathReference::nearest(const Vec& origin, const Vec& way) const {
+  Found best;
+  for (const WorldTriangle& triangle : triangles_) {
+    const LineHit hit = intersect(triangle, origin, way);
+    if (hit.inside && hit.t > 0 && (!best.triangle || hit.t < best.t) && is_met(triangle, way))
+      best = {&triangle, hit.t, hit.u, hit.v};
+  }
+  return best;
+}
+
+PathReference::Surface PathReference::surface_at(const Found& found, const Vec& way, double floor) const {
+  const WorldTriangle& triangle = *found.triangle;
+  Surface s{};
+  s.object = &scene_.objects[triangle.object];
+  s.material = &scene_.material(s.object->material);
+  const Mesh& mesh = scene_.mesh(s.object->mesh);
+  s.optics = surface_optics(*s.material, mesh);
+  s.p = triangle.a * (1 - found.u - found.v) + triangle.b * found.u + triangle.c * found.v;
+  const Imath::M44d world(s.object->to_world);
+  Vec front = normal_of(triangle).normalized();
+  if (world.determinant() < 0) front = -front;
+  s.inside = front.dot(way) > 0;
+  s.ng = s.n = s.inside ? -front : front;
+  s.lift = kBlack;
+  if (!mesh.normals.empty()) {
+    const auto& [i, j, k] = mesh.triangles[triangle.primitive];
+    const std::uint32_t corners[] = {i, j, k};
+    const double weights[] = {1 - found.u - found.v, found.u, found.v};
+    Vec at = kBlack, normal = kBlack, lift = kBlack;
+    for (int c = 0; c < 3; ++c) at += Vec(mesh.positions[corners[c]]) * weights[c];
+    for (int c = 0; c < 3; ++c) {
+      const Vec one = Vec(mesh.normals[corners[c]]) * (s.inside ? -1.0 : 1.0);
+      normal += one * weights[c];
+      lift += one * (weights[c] * std::max((Vec(mesh.positions[corners[c]]) - at).dot(one), 0.0));
+    }
+    world.multDirMatrix(lift, s.lift);
+    world.inverse().transposed().multDirMatrix(normal, s.n);
+    s.n.normalize();
+    if (s.n.dot(s.ng) < 0) s.n = -s.n;
+  }
+  s.view = -way;
+  s.nv = std::max(s.n.dot(s.view), 1e-4);
+  s.alpha = std::max(std::pow(std::max(double{s.material->roughness}, 0.05), 2), floor);
+  s.coat_alpha = std::max(std::pow(std::max(double{s.material->clearcoat_roughness}, 0.05), 2), floor);
+  return s;
+}
+
+Vec PathReference::passed(const Vec& from, const Vec& way, double distance) const {
+  std::vector<Found> crossings;
+  for (const WorldTriangle& triangle : triangles_) {
+    const LineHit hit = intersect(triangle, from, way);
+    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, -way))  // the light comes the other way
+      crossings.push_back({&triangle, hit.t, hit.u, hit.v});
+  }
+  std::ranges::sort(crossings, {}, &Found::t);
+  Vec light(1, 1, 1);
+  std::map<std::uint32_t, double> entered;
+  for (const Found& found : crossings) {
+    double& entry = entered[found.triangle->object];
+    light *= surface_at(found, way, 0).tint(found.t - entry);
+    entry = found.t;
+  }
+  return light;
+}
+
+Vec PathReference::surroundings(const Ray& ray) const {
+  const Environment& environment = scene_.environment;
+  Vec value = color_of(environment.color) * double{environment.intensity};
+  if (!environment.image) return value;
+  const double turned = std::atan2(ray.way.x, -ray.way.z) + environment.rotation;
+  const Uv uv(static_cast<float>(0.5 + turned / (2 * kPi)), static_cast<float>(std::acos(ray.way.y) / kPi));
+  const Rgba texel = sample(*environment.image, uv, 0, {Wrap::repeat, Wrap::clamp});
+  return value * Vec(texel.r, texel.g, texel.b);
+}
+
+Vec PathReference::crossed(const Ray& ray, double end) const {
+  Vec sum = kBlack;
+  for (const LightId id : scene_.light_order) {
+    const Light& light = scene_.light(id);
+    if (!has_shape(light) || !ray.meets_lights || (ray.is_eye && !light.visible)) continue;
+    if (ray.from != nullptr &&
+        light.excludes(ObjectId(static_cast<std::uint32_t>(ray.from - scene_.objects.data()))))
+      continue;
+    const auto t = crossing(light, ray.origin, ray.way);
+    if (t && *t < end) sum += radiance_of(light) * share_of(light, ray.origin);
+  }
+  return sum;
+}
+
+Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind, Random& random) const {
+  Vec way, arriving;  // radiance over the density of the sample, or irradiance
+  double distance = 1e30;
+  if (light.kind == LightKind::suns) return kBlack;
+  const bool is_sized = has_shape(light) || light.kind == LightKind::emission;
+  if (light.kind == LightKind::emission) {
+    double area = 0;
+    for (const WorldTriangle& t : triangles_)
+      if (scene_.objects[t.object].material == light.material) area += normal_of(t).length() / 2;
+    double left = number(random) * area;
+    const WorldTriangle* chosen = nullptr;
+    for (const WorldTriangle& t : triangles_) {
+      if (scene_.objects[t.object].material != light.material) continue;
+      chosen = &t;
+      if ((left -= normal_of(t).length() / 2) < 0) break;
+    }
+    const double root = std::sqrt(number(random)), v = root * number(random);
+    const Vec to = chosen->a * (1 - root) + chosen->b * (root - v) + chosen->c * v - s.p;
+    way = to.normalized();
+    if (!is_met(*chosen, way)) return kBlack;
+    distance = to.length() - 1e-5;
+    arriving = radiance_of(light) * (area * std::fabs(normal_of(*chosen).normalized().dot(way)) / to.length2());
+  } else if (traits_of(light.kind).has_size) {
+    double x = 2 * number(random) - 1, y = 2 * number(random) - 1, area = 4;
+    if (light.kind == LightKind::disk) {
+      const double radius = std::sqrt(number(random)), turn = 2 * kPi * number(random);
+      x = radius * std::cos(turn), y = radius * std::sin(turn), area = kPi;
+    }
+    const Vec to = Vec(light.position) + Vec(light.right) * x + Vec(light.up) * y - s.p;
+    area *= Vec(light.right).cross(Vec(light.up)).length();
+    way = to.normalized();
+    distance = to.length();
+    arriving = radiance_of(light) * (area * std::max(-Vec(light.direction).dot(way), 0.0) / to.length2());
+  } else if (is_sized) {
+    Vec axis = -Vec(light.direction);
+    double least = std::cos(light.angle / 2.0);
+    if (light.radius > 0) {
+      axis = Vec(light.position) - s.p;
+      least = std::sqrt(std::max(1 - light.radius * double{light.radius} / axis.length2(), 0.0));
+    }
+    way = tilted(axis.normalized(), least + (1 - least) * number(random), 2 * kPi * number(random));
+    distance = crossing(light, s.p, way).value_or(0);
+    arriving = radiance_of(light) * (share_of(light, s.p) * 2 * kPi * (1 - least));
+  } else if (traits_of(light.kind).has_place) {
+    const Vec to = Vec(light.position) - s.p;
+    way = to.normalized();
+    distance = to.length();
+    arriving = color_of(light.color) * (light.intensity * share_of(light, s.p) /
+                                        std::max(to.length2(), is_behind ? 1e-4 : 1e-8));
+  } else {
+    way = -Vec(light.direction);
+    arriving = color_of(light.color) * double{light.intensity};
+  }
+  if (s.n.dot(way) <= 0) return kBlack;
+  Vec value = s.diffuse(way);
+  if (!is_sized || Surface::is_wide(s.alpha)) value += s.specular(way);
+  if (!is_sized || Surface::is_wide(s.coat_alpha)) value += s.coating(way);
+  const Vec light_there = value * arriving;
+  if (is_black(light_there)) return kBlack;
+  const Vec origin = s.p + s.lift * std::clamp(1 - s.ng.dot(way) / 0.1, 0.0, 1.0) + s.ng * kOffset;
+  return light_there * passed(origin, way, distance);
+}
+
+Vec PathReference::gathered(const Surface& s, const Ray& ray, Random& random) const {
+  Vec sum = kBlack;
+  if (s.is_interface()) return sum;
+  const ObjectId object(static_cast<std::uint32_t>(s.object - scene_.objects.data()));
+  for (const LightId id : scene_.light_order)
+    if (!scene_.light(id).excludes(object)) sum += of_light(scene_.light(id), s, ray.from != nullptr, random);
+  return sum;
+}
+
+Vec PathReference::scattered(const Surface& s, const Ray& ray, Random& random) const {
+  enum class Kind { diffuse, specular, coat };
+  std::vector<Kind> kinds;
+  if (!s.is_interface()) kinds.push_back(Kind::diffuse);
+  kinds.push_back(Kind::specular);
+  if (s.coat() > 0) kinds.push_back(Kind::coat);
+  const Kind kind = kinds[static_cast<std::size_t>(number(random) * static_cast<double>(kinds.size()))];
+  const double u = number(random), turn = 2 * kPi * number(random);
+  Ray next = ray;
+  next.generation = ray.generation + 1;
+  next.from = s.object;
+  next.is_eye = false;
+  Vec weight;
+  double alpha = 1;
+  if (kind == Kind::diffuse) {
+    next.way = tilted(s.n, std::sqrt(u), turn);
+    weight = s.diffuse(next.way) * (kPi / std::max(s.n.dot(next.way), 1e-12));
+    next.floor = std::max(ray.floor, 0.25);
+    next.gathers = true;
+    next.meets_lights = false;
+  } else {
+    alpha = kind == Kind::coat ? s.coat_alpha : s.alpha;
+    const double nh = 1 / std::sqrt(1 + alpha * alpha * u / (1 - u)), sine2 = 1 - nh * nh;
+    const Vec h = tilted(s.n, nh, turn);
+    const double vh = s.view.dot(h);
+    if (vh <= 0) return kBlack;
+    next.way = (h * (2 * vh) - s.view).normalized();
+    const double d = nh * nh * alpha * alpha + sine2;
+    const double density = alpha * alpha / (kPi * d * d) * nh / (4 * vh);
+    weight = (kind == Kind::coat ? s.coating(next.way) : s.specular(next.way)) / density;
+    const double bucket = std::exp2(std::min(std::floor(std::log2(alpha)), -1.0));  // its lower end
+    next.floor = std::max(ray.floor, std::min(bucket, 0.25));
+    ++next.glossy;
+    next.gathers = next.glossy > glossy_depth_ || ray.generation >= max_depth_;
+    next.meets_lights = !Surface::is_wide(alpha) || s.is_interface();
+  }
+  if (s.optics.refracts && s.optics.counts_in_cutoff)
+    next.fresnel *= exact_reflectance(std::min(s.inside ? std::max(s.nv, s.ng.dot(s.view)) : s.nv, 1.0),
+                                      s.is_interface() ? 1 / s.optics.ior : s.optics.ior);
+  if (next.way.dot(s.ng) <= 0 || is_black(weight) || next.fresnel < 1e-3) return kBlack;
+  next.origin = s.p + s.ng * kOffset;
+  next.within = s.is_interface() ? s.material : nullptr;
+  return weight * static_cast<double>(kinds.size()) * radiance(next, random);
+}
+
+Vec PathReference::refracted(const Surface& s, const Ray& ray, Random& random) const {
+  if (!s.optics.refracts || ray.generation >= max_depth_ + (ray.gathers ? 8 : 0)) return kBlack;
+  Ray next = ray;
+  ++next.generation;
+  const double eta = s.is_interface() ? 1.0 / s.optics.ior : double{s.optics.ior};
+  const double cosine = std::min(s.inside ? std::max(s.nv, s.ng.dot(s.view)) : s.nv, 1.0);
+  if (s.optics.counts_in_cutoff) next.fresnel *= 1 - exact_reflectance(cosine, eta);
+  if (next.fresnel < 1e-3) return kBlack;
+  Vec weight = s.is_interface() ? Vec(1, 1, 1) : s.base();
+  weight *= (1.0 - s.material->metallic) * s.material->transmission * s.entered() * s.below_coat();
+  next.origin = s.p - s.ng * kOffset;
+  if (s.optics.bent) {
+    Vec n = s.n;
+    double c = std::min(s.nv, 1.0), sine2 = (1 - c * c) / (eta * eta);
+    if (sine2 >= 1 && s.inside) {
+      n = s.ng;
+      c = std::min(std::max(s.ng.dot(s.view), s.nv), 1.0);
+      sine2 = (1 - c * c) / (eta * eta);
+    }
+    if (sine2 >= 1) return kBlack;
+    next.way = (ray.way / eta + n * (c / eta - std::sqrt(1 - sine2))).normalized();
+    next.is_eye = false;
+    next.within = s.inside ? nullptr : s.material;
+  }
+  return weight * radiance(next, random);
+}
+
+Vec PathReference::radiance(const Ray& ray, Random& random) const {
+  const Found found = nearest(ray.origin, ray.way);
+  Vec sum = crossed(ray, found.triangle ? found.t : 1e31);
+  if (!found.triangle) return sum + surroundings(ray);
+  const Surface s = surface_at(found, ray.way, ray.floor);
+  const Material& material = *s.material;
+  const double coverage = s.coverage();
+  Vec own = kBlack;
+  if (material.model == IlluminationModel::unlit) {
+    own = s.base();
+  } else {
+    if (ray.is_eye || ray.meets_lights)
+      own += color_of(material.emissive) * (material.emissive_strength * s.below_coat());
+    if (!ray.gathers) own += gathered(s, ray, random) + scattered(s, ray, random);
+    own += refracted(s, ray, random);
+  }
+  sum += own * coverage;
+  if (coverage < 1 && ray.generation < max_depth_ + (ray.gathers ? 8 : 0)) {
+    Ray straight = ray;
+    straight.origin = s.p - s.ng * kOffset;
+    ++straight.generation;
+    sum += radiance(straight, random) * (1 - coverage);
+  }
+  if (ray.within != nullptr && std::isfinite(ray.within->attenuation_distance))
+    for (int c = 0; c < 3; ++c)
+      sum[c] *= std::pow(double{ray.within->attenuation_color[c]}, found.t / ray.within->attenuation_distance);
+  return sum;
+}
+
+std::vector<PathReference::Pixel> PathReference::pixels(unsigned samples, std::uint64_t seed) const {
+  const Camera& camera = scene_.camera;
+  Random random(seed);
+  std::vector<Pixel> result;
+  for (std::uint32_t y = 0; y < camera.height; ++y) {
+    for (std::uint32_t x = 0; x < camera.width; ++x) {
+      Vec sum = kBlack, squares = kBlack;
+      for (unsigned k = 0; k < samples; ++k) {
+        const double across = x + number(random), down = y + number(random);
+        const CameraRay from = camera_ray(camera, static_cast<float>(across), static_cast<float>(down));
+        Ray ray{};
+        ray.origin = Vec(from.origin);
+        ray.way = Vec(from.direction).normalized();
+        const Vec value = radiance(ray, random);
+        sum += value;
+        squares += value * value;
+      }
+      const Vec mean = sum / samples;
+      result.push_back({mean, (squares / samples - mean * mean) / (samples - 1.0)});
+    }
+  }
+  return result;
+}
+
+}  // namespace relook
