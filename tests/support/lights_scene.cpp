@@ -175,6 +175,7 @@ SceneState lights_scene(std::uint32_t width, std::uint32_t height) {
   add_surfaces(scene, textures);
   add_lights(scene);
   scene.environment({{"image", textures.sky},
+                     {"color", {1, 1, 1}},
                      {"intensity", 0.8},
                      {"rotation", 0.4},
                      {"background", {{"color", {0.1, 0.12, 0.15}}}}});
