@@ -28,8 +28,8 @@ std::vector<MatrixRow> gift_rows() {
     rows.push_back(row(name + ": temperature", set(light + "/extras/relook/temperature", 3200)));
     rows.push_back(row(name + ": black", set(light + "/intensity", 0)));
     rows.push_back(row(name + ": not black", set(light + "/intensity", 11), set(light + "/color", {1, 0.7, 0.5})));
-    rows.push_back(row(name + ": excludes", set("/nodes/" + name + "/extras/relook/excludes", {"Ball", "Pane"})));
-    rows.push_back(row(name + ": excludes another", set("/nodes/" + name + "/extras/relook/excludes", {"Ground"})));
+    rows.push_back(row(name + ": excludes", set("/nodes/" + name + "/extras/relook/excludes", Json::array({"Ball", "Pane"}))));
+    rows.push_back(row(name + ": excludes another", set("/nodes/" + name + "/extras/relook/excludes", Json::array({"Ground"}))));
     rows.push_back(row(name + ": excludes none", removed("/nodes/" + name + "/extras/relook/excludes")));
   }
   rows.push_back(row("cone", set("/lights/Spot/spot/outerConeAngle", 0.4)));
@@ -37,7 +37,7 @@ std::vector<MatrixRow> gift_rows() {
   rows.push_back(row("range of a point", add("/lights/Lamp/range", 5)));
   rows.push_back(row("range of a soft spot", add("/lights/Spot/range", 6)));
   rows.push_back(row("no range", removed("/lights/Lamp/range")));
-  rows.push_back(row("excluded once more, by a light that moves", set("/nodes/Lamp/extras/relook/excludes", {"Coated"}),
+  rows.push_back(row("excluded once more, by a light that moves", set("/nodes/Lamp/extras/relook/excludes", Json::array({"Coated"})),
                      set("/nodes/Lamp/translation", {1.5, 3, 3})));
   rows.push_back(row("an excluded node moves", set("/nodes/Coated/translation", {0.6, 0.4, 1})));
   rows.push_back(row("ambient", set("/scene/extras/relook/ambient", {0.1, 0.05, 0.02})));
@@ -227,7 +227,7 @@ TEST(LightEdit, that_fails_leaves_all_as_before) {
   const Frame frame = replayer.image().frame;
   const std::vector<PackedSums> sums = replayer.image().light_sums;
   const MatrixRow wrong[] = {
-      row("an unknown node excluded", set("/nodes/Lamp/extras/relook/excludes", {"Nobody"})),
+      row("an unknown node excluded", set("/nodes/Lamp/extras/relook/excludes", Json::array({"Nobody"}))),
       row("one of two", set("/lights/Window/size", 2), set("/lights/Dish/size", -1)),
       row("after a move", set("/nodes/Window/translation", {0, 3, 0}), set("/lights/Spot/extras/relook/radius", -1)),
       row("after one more", add("/nodes/More", placed_light("EXT_lights_area", "Dish", {0, 3, 1})),
