@@ -11,6 +11,12 @@ const std::vector<std::string> kSkies = {"SkyImage", "SecondSkyImage", "EvenSkyI
 
 bool has(const Json& look, const std::string& pointer) { return look.contains(Json::json_pointer(pointer)); }
 
+/// Those of the names that a section has.
+std::vector<std::string> known(const Json& look, const char* section, std::vector<std::string> names) {
+  std::erase_if(names, [&](const std::string& name) { return !look.at(section).contains(name); });
+  return names;
+}
+
 /// Names of the nodes that place lights.
 std::vector<std::string> light_nodes(const Json& look) {
   std::vector<std::string> nodes;
@@ -28,8 +34,7 @@ void set_extra(Change& change, const Json& look, const std::string& owner, const
 }
 
 void change_gift(Change& change, const Json& look, Dice& dice) {
-  const std::string light = "/lights/" + dice.one_of(kLights);
-  if (!has(look, light)) return;
+  const std::string light = "/lights/" + dice.one_of(known(look, "lights", kLights));
   switch (dice.below(6)) {
     case 0:
       return change.set(look, light + "/color", dice.color());
@@ -40,6 +45,7 @@ void change_gift(Change& change, const Json& look, Dice& dice) {
     case 3:
       return change.set(look, "/lights/Lamp/range", dice.between(3, 9));
     case 4:
+      if (!has(look, "/lights/Spot")) return;
       return change.set(look, "/lights/Spot/spot/outerConeAngle", dice.between(0.3, 0.9));
     default:
       return change.set(look, "/scene/extras/relook/ambient", dice.color());
@@ -48,20 +54,17 @@ void change_gift(Change& change, const Json& look, Dice& dice) {
 
 void change_shape(Change& change, const Json& look, Dice& dice) {
   const double size = dice.chance(0.3) ? 0.0 : dice.between(0.05, 0.5);
-  switch (dice.below(6)) {
+  const std::string name = dice.one_of(known(look, "lights", kLights)), light = "/lights/" + name;
+  if (dice.chance(0.2)) return set_extra(change, look, light, "rate", dice.between(0.25, 1));
+  if (name == "Sun") return set_extra(change, look, light, "angle", size);
+  if (name == "Lamp" || name == "Spot") return set_extra(change, look, light, "radius", size);
+  switch (dice.below(3)) {
     case 0:
-      return set_extra(change, look, "/lights/" + dice.one_of(std::vector<std::string>{"Lamp", "Spot"}), "radius", size);
+      return change.set(look, light + "/size", size + 0.25);
     case 1:
-      return set_extra(change, look, "/lights/Sun", "angle", size);
-    case 2:
-      return change.set(look, "/lights/" + dice.one_of(std::vector<std::string>{"Window", "Dish"}) + "/size",
-                        size + 0.25);
-    case 3:
-      return change.set(look, "/lights/Window/rect", {{"aspect", dice.between(0.25, 4)}});
-    case 4:
-      return change.set(look, "/lights/Window/type", dice.one_of(std::vector<std::string>{"rect", "disk"}));
+      return change.set(look, light + "/rect", {{"aspect", dice.between(0.25, 4)}});
     default:
-      return set_extra(change, look, "/lights/" + dice.one_of(kLights), "rate", dice.between(0.25, 1));
+      return change.set(look, light + "/type", dice.one_of(std::vector<std::string>{"rect", "disk"}));
   }
 }
 
@@ -71,7 +74,7 @@ void change_place(Change& change, const Json& look, Dice& dice) {
   const std::string extra = "/nodes/" + dice.one_of(std::vector<std::string>{"A0", "M0", "Z0"});
   if (has(look, extra) && dice.chance(0.5)) return change.remove(look, extra);
   if (nodes.empty() || dice.chance(0.2)) {
-    const std::string light = dice.one_of(kLights);
+    const std::string light = dice.one_of(known(look, "lights", kLights));
     const bool is_area = light == "Window" || light == "Dish";
     Json node = {{"translation", place}, {"rotation", {-0.5, 0, 0, 0.8660254}}};
     node["extensions"][is_area ? "EXT_lights_area" : "KHR_lights_punctual"]["light"] = light;
@@ -97,6 +100,7 @@ void change_place(Change& change, const Json& look, Dice& dice) {
 
 void change_sky(Change& change, const Json& look, Dice& dice) {
   const std::string sky = "/scene/extras/relook/environment";
+  const std::string image = dice.one_of(known(look, "images", kSkies));
   switch (dice.below(6)) {
     case 0:
       return change.set(look, sky + "/color", dice.color());
@@ -106,28 +110,27 @@ void change_sky(Change& change, const Json& look, Dice& dice) {
       return change.set(look, sky + "/rotation", dice.between(-3, 3));
     case 3:
       if (has(look, sky + "/image") && dice.chance(0.3)) return change.remove(look, sky + "/image");
-      return change.set(look, sky + "/image", dice.one_of(kSkies));
+      return change.set(look, sky + "/image", image);
     case 4:
       return change.set(look, sky + "/background",
                         dice.chance(0.5) ? Json() : Json{{"color", dice.color()}, {"rotation", dice.between(0, 1)}});
     default:
-      return change.set(look, sky + "/background", {{"image", dice.one_of(kSkies)}, {"intensity", dice.between(0, 1)}});
+      return change.set(look, sky + "/background", {{"image", image}, {"intensity", dice.between(0, 1)}});
   }
 }
 
 void change_emission(Change& change, const Json& look, Dice& dice) {
-  const std::string material = "/materials/" + dice.one_of(kEmitting);
-  if (!has(look, material)) return;
+  const std::string material = "/materials/" + dice.one_of(known(look, "materials", kEmitting));
   switch (dice.below(4)) {
     case 0:
     case 1:
       return change.set(look, material + "/emissiveFactor", dice.chance(0.4) ? Json{0, 0, 0} : dice.color());
     case 2:
       return change.set(look, material + "/emissiveTexture",
-                        {{"index", dice.one_of(std::vector<std::string>{"Picture", "Second"})}});
+                        {{"index", dice.one_of(known(look, "textures", {"Picture", "Second"}))}});
     default:
-      if (!has(look, "/nodes/Glow")) return;
-      return change.set(look, "/nodes/Glow/translation", {dice.between(-1, 1), dice.between(0.2, 1.5), 1.5});
+      return change.set(look, has(look, "/nodes/Glow") ? "/nodes/Glow/translation" : "/nodes/Glowing/translation",
+                        {dice.between(-1, 1), dice.between(0.2, 1.5), 1.5});
   }
 }
 

@@ -4,7 +4,7 @@
 
 namespace relook {
 
-/// An edit of one light, of the environment or of what emits, in lights_scene() as it is now.
+/// An edit of one light, of the environment or of what emits, in lights_scene() or study_scene() as it is now.
 [[nodiscard]] Change random_light_change(const Json& look, Dice& dice);
 /// One of these or random_change(), both perhaps in one edit.
 [[nodiscard]] Change random_path_change(const Json& look, Dice& dice);
