@@ -58,7 +58,7 @@ void change_shape(Change& change, const Json& look, Dice& dice) {
   if (dice.chance(0.2)) return set_extra(change, look, light, "rate", dice.between(0.25, 1));
   if (name == "Sun") return set_extra(change, look, light, "angle", size);
   if (name == "Lamp" || name == "Spot") return set_extra(change, look, light, "radius", size);
-  switch (dice.below(3)) {
+  switch (name == "Window" ? dice.below(3) : 0) {
     case 0:
       return change.set(look, light + "/size", size + 0.25);
     case 1:
@@ -112,8 +112,8 @@ void change_sky(Change& change, const Json& look, Dice& dice) {
       if (has(look, sky + "/image") && dice.chance(0.3)) return change.remove(look, sky + "/image");
       return change.set(look, sky + "/image", image);
     case 4:
-      return change.set(look, sky + "/background",
-                        dice.chance(0.5) ? Json() : Json{{"color", dice.color()}, {"rotation", dice.between(0, 1)}});
+      if (has(look, sky + "/background")) return change.remove(look, sky + "/background");
+      return change.set(look, sky + "/background", {{"color", dice.color()}, {"rotation", dice.between(0, 1)}});
     default:
       return change.set(look, sky + "/background", {{"image", image}, {"intensity", dice.between(0, 1)}});
   }
@@ -129,8 +129,8 @@ void change_emission(Change& change, const Json& look, Dice& dice) {
       return change.set(look, material + "/emissiveTexture",
                         {{"index", dice.one_of(known(look, "textures", {"Picture", "Second"}))}});
     default:
-      return change.set(look, has(look, "/nodes/Glow") ? "/nodes/Glow/translation" : "/nodes/Glowing/translation",
-                        {dice.between(-1, 1), dice.between(0.2, 1.5), 1.5});
+      for (const std::string node : {"/nodes/Glow", "/nodes/Glowing"})
+        if (has(look, node)) change.set(look, node + "/translation", {dice.between(-1, 1), dice.between(0.2, 1.5), 1.5});
   }
 }
 
