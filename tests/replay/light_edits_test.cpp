@@ -28,16 +28,18 @@ std::vector<MatrixRow> gift_rows() {
     rows.push_back(row(name + ": temperature", set(light + "/extras/relook/temperature", 3200)));
     rows.push_back(row(name + ": black", set(light + "/intensity", 0)));
     rows.push_back(row(name + ": not black", set(light + "/intensity", 11), set(light + "/color", {1, 0.7, 0.5})));
-    rows.push_back(row(name + ": excludes", set("/nodes/" + name + "/extras/relook/excludes", Json::array({"Ball", "Pane"}))));
-    rows.push_back(row(name + ": excludes another", set("/nodes/" + name + "/extras/relook/excludes", Json::array({"Ground"}))));
-    rows.push_back(row(name + ": excludes none", removed("/nodes/" + name + "/extras/relook/excludes")));
+    const std::string excludes = "/nodes/" + name + "/extras/relook/excludes";
+    rows.push_back(row(name + ": excludes", set(excludes, Json::array({"Ball", "Pane"}))));
+    rows.push_back(row(name + ": excludes another", set(excludes, Json::array({"Ground"}))));
+    rows.push_back(row(name + ": excludes none", removed(excludes)));
   }
   rows.push_back(row("cone", set("/lights/Spot/spot/outerConeAngle", 0.4)));
   rows.push_back(row("inner cone", set("/lights/Spot/spot/innerConeAngle", 0.1)));
   rows.push_back(row("range of a point", add("/lights/Lamp/range", 5)));
   rows.push_back(row("range of a soft spot", add("/lights/Spot/range", 6)));
   rows.push_back(row("no range", removed("/lights/Lamp/range")));
-  rows.push_back(row("excluded once more, by a light that moves", set("/nodes/Lamp/extras/relook/excludes", Json::array({"Coated"})),
+  rows.push_back(row("excluded once more, by a light that moves",
+                     set("/nodes/Lamp/extras/relook/excludes", Json::array({"Coated"})),
                      set("/nodes/Lamp/translation", {1.5, 3, 3})));
   rows.push_back(row("an excluded node moves", set("/nodes/Coated/translation", {0.6, 0.4, 1})));
   rows.push_back(row("ambient", set("/scene/extras/relook/ambient", {0.1, 0.05, 0.02})));
@@ -234,7 +236,8 @@ TEST(LightEdit, that_fails_leaves_all_as_before) {
           set("/lights/Lamp/extras/relook/rate", 0)),
       row("an excluded node removed", removed("/nodes/Cloth")),
       row("an unknown image", set(kSky + "rotation", 2), set(kSky + "image", "NoImage")),
-      row("after emission", set(kGlow + "emissiveFactor", {0, 0, 0}), set("/materials/NoMaterial/emissiveFactor", {1, 1, 1})),
+      row("after emission", set(kGlow + "emissiveFactor", {0, 0, 0}),
+          set("/materials/NoMaterial/emissiveFactor", {1, 1, 1})),
       row("after a new order", removed("/nodes/Lamp"), set("/lights/Sun/extras/relook/angle", 4)),
   };
   for (const MatrixRow& edit : wrong) {

@@ -10,8 +10,8 @@
 namespace relook {
 namespace {
 
-/// Steps through rows under `path`, which has no tunnels and adds sums of light: a colour edit of a light changes pixels
-/// without a sample.
+/// Steps through rows under `path`, which has no tunnels and adds sums of light: a colour edit of a light changes
+/// pixels without a sample.
 void expect_full_path_renders(const SceneState& state, const ViewOptions& view, const std::vector<MatrixRow>& rows,
                               std::optional<ChangeClass> is_of_class, const RegionOptions& regions) {
   Replayer replayer = path_replayer(state, view, {}, regions);

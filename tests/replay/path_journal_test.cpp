@@ -1,6 +1,6 @@
-// Journals of mixed edits under `path` from a printed seed (RELOOK_SEED=<number> repeats or varies them), from memory or
-// a cache, with one thread or four: after every step, drag and release pixels, sums of light and ray trees are those of
-// a fresh preprocess, and edits that are undone give all of it back.
+// Journals of mixed edits under `path` from a printed seed (RELOOK_SEED=<number> repeats or varies them), from memory
+// or a cache, with one thread or four: after every step, drag and release pixels, sums of light and ray trees are those
+// of a fresh preprocess, and edits that are undone give all of it back.
 #include <gtest/gtest.h>
 
 #include <iostream>

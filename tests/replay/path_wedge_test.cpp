@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wedge{"reflection", "Phong/extras/relook/reflection", {0, 0.01, 0.3, 0.7, 1}}),
     [](const testing::TestParamInfo<Wedge>& info) { return std::string(info.param.name); });
 
-TEST(PathWedge, lobes_come_and_go_with_other_edits) {
+TEST(PathLobes, come_and_go_with_other_edits) {
   const std::string sheen = "/materials/Cloth/extensions/KHR_materials_sheen/sheenColorFactor";
   expect_full_renders(
       lights_scene(28, 21), path_view(4),
@@ -85,7 +85,7 @@ TEST(PathWedge, lobes_come_and_go_with_other_edits) {
            set("/nodes/Dish/translation", {-0.6, 1.6, 0.8})),
        row("a coat on plastic", set("/materials/Matte/extensions/KHR_materials_clearcoat/clearcoatFactor", 1)),
        row("no sheen", set(sheen, {0, 0, 0})), row("a sheen again", set(sheen, {0.2, 0.9, 0.4})),
-       row("a metal whose colour is black", set("/materials/Mirror/pbrMetallicRoughness/baseColorFactor", {0, 0, 0, 1})),
+       row("a black metal", set("/materials/Mirror/pbrMetallicRoughness/baseColorFactor", {0, 0, 0, 1})),
        row("and is not", set("/materials/Mirror/pbrMetallicRoughness/baseColorFactor", {0.4, 0.9, 0.9, 1})),
        row("glass is thin", set("/materials/Glass/extensions/KHR_materials_volume/thicknessFactor", 0)),
        row("glass is rough and thick", set("/materials/Glass/extensions/KHR_materials_volume/thicknessFactor", 1),

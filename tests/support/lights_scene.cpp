@@ -1,6 +1,6 @@
 // The scene of the integrator `path`: lights Lamp (a point), Spot (soft, excludes Cloth), Sun (soft), Window (a
-// rectangle), Dish (a disk that the camera sees), the emission of Glow with an image, and an environment whose image has
-// a sun; Ground and Ball are dull, MirrorBall is rough metal, GlassBall a volume, Pane thin glass, Veil blended, Coated
+// rectangle), Dish (a disk that the camera sees), the emission of Glow with an image, and an environment whose image
+// has a sun; Ground and Ball are dull, MirrorBall is rough metal, GlassBall a volume, Pane thin glass, Veil blended, Coated
 // bumpy under its coat, Cloth has sheen, Phong and Sign have the other models.
 #include <cmath>
 
@@ -43,7 +43,9 @@ Rgba second_sky_texel(std::uint32_t x, std::uint32_t y) {
   return Rgba(0.4F, 0.25F + 0.005F * static_cast<float>(x), 0.15F, 1);
 }
 /// No texel that counts as a sun.
-Rgba even_sky_texel(std::uint32_t, std::uint32_t y) { return Rgba(0.3F, 0.3F, 0.2F + 0.01F * static_cast<float>(y), 1); }
+Rgba even_sky_texel(std::uint32_t, std::uint32_t y) {
+  return Rgba(0.3F, 0.3F, 0.2F + 0.01F * static_cast<float>(y), 1);
+}
 
 struct Textures {
   int picture, veil, bumps, rough, sky;
@@ -154,10 +156,17 @@ void add_lights(SceneBuilder& scene) {
                {"rotation", downwards},
                {"extras", of_relook("excludes", Json::array({"Cloth"}))}});
   scene.light("Sun",
-              {{"type", "directional"}, {"intensity", 0.9}, {"color", {1, 0.9, 0.7}}, {"extras", of_relook("angle", 0.05)}},
+              {{"type", "directional"},
+               {"intensity", 0.9},
+               {"color", {1, 0.9, 0.7}},
+               {"extras", of_relook("angle", 0.05)}},
               {{"rotation", {-0.35, 0.2, 0.1, 0.9096}}});
   scene.area_light("Window",
-                   {{"type", "rect"}, {"size", 1.2}, {"rect", {{"aspect", 1.5}}}, {"intensity", 9}, {"color", {0.6, 0.8, 1}}},
+                   {{"type", "rect"},
+                    {"size", 1.2},
+                    {"rect", {{"aspect", 1.5}}},
+                    {"intensity", 9},
+                    {"color", {0.6, 0.8, 1}}},
                    {{"translation", {1.6, 2.4, 2.2}}, {"rotation", downwards}});
   scene.area_light("Dish", {{"type", "disk"}, {"size", 0.7}, {"intensity", 14}},
                    {{"translation", {-1, 2, -1.6}},

@@ -1,5 +1,5 @@
 // Checks of a replay under the integrator `path` against a fresh preprocess of its document as it is now: pixels, sums
-// of light, ray trees. Each check gives a sentence, "" if there is nothing to say, so that a failure names what differs.
+// of light, ray trees. Each check gives a sentence, "" if there is nothing to say: a failure names what differs.
 #pragma once
 #include <string>
 

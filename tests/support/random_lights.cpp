@@ -130,7 +130,8 @@ void change_emission(Change& change, const Json& look, Dice& dice) {
                         {{"index", dice.one_of(known(look, "textures", {"Picture", "Second"}))}});
     default:
       for (const std::string node : {"/nodes/Glow", "/nodes/Glowing"})
-        if (has(look, node)) change.set(look, node + "/translation", {dice.between(-1, 1), dice.between(0.2, 1.5), 1.5});
+        if (has(look, node))
+          change.set(look, node + "/translation", {dice.between(-1, 1), dice.between(0.2, 1.5), 1.5});
   }
 }
 
