@@ -20,13 +20,13 @@ SceneState open_state(const Arguments& arguments, Console& console) {
   std::error_code error;
   if (std::filesystem::is_directory(arguments.scene, error)) {
     CacheContent content = load_cache(arguments.scene);
-    return {std::move(content.document), content.camera, content.pyramids};
+    return {std::move(content.document), content.camera, content.pyramids, content.image.view.integrator};
   }
   LoadedDocument loaded = load_document(arguments.scene, arguments.view);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
   const Camera camera = set_up_inspection(loaded, arguments.view);
   console.warn(loaded.warnings);
-  return {std::move(loaded.document), camera, std::make_shared<PyramidStore>()};
+  return {std::move(loaded.document), camera, std::make_shared<PyramidStore>(), arguments.view.sampling.integrator};
 }
 
 Classification classify_edit(SceneState& state, const Edit& edit, const Journal& journal) {

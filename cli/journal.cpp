@@ -56,7 +56,8 @@ DiffDraft make_diff(const Arguments& arguments, const SceneState& before, Consol
   const Camera camera = set_up_inspection(loaded, arguments.view);
   console.warn(loaded.warnings);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
-  const SceneState after(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
+  const SceneState after(std::move(loaded.document), camera, std::make_shared<PyramidStore>(),
+                         arguments.view.sampling.integrator);
   require_one_camera(arguments, before.scene().camera, camera);
   const std::filesystem::path journal(arguments.output);
   return draft_diff(before.document(), after.document(), journal.stem().string() + ".files");
@@ -110,7 +111,8 @@ ExitCode run_journal(const Arguments& arguments, Console& console) {
   const Camera camera = set_up_inspection(loaded, arguments.view);
   console.warn(loaded.warnings);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
-  SceneState state(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
+  SceneState state(std::move(loaded.document), camera, std::make_shared<PyramidStore>(),
+                   arguments.view.sampling.integrator);
   const auto [draft, files] = make_draft(arguments, state, console);
   console.warn(draft.warnings);
   const std::string text = journal_text(draft);

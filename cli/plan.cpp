@@ -48,7 +48,7 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
   {
     LookDocument document = content.document;
     document.assets = std::make_shared<Assets>(*document.assets);
-    SceneState state(std::move(document), content.camera, content.pyramids);
+    SceneState state(std::move(document), content.camera, content.pyramids, view.integrator);
     console.warn(check_journal(state, journal));
   }
   const Plan plan =

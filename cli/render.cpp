@@ -40,13 +40,25 @@ void apply_journal(SceneState& state, const Journal& journal, const std::optiona
   meta.change_class = change_class_name(change);
 }
 
-Bytes encoded(const Arguments& arguments, const SceneState& state, const Frame& frame,
+/// The frame, with its sums of light where layers need them.
+Image rendered_image(const Arguments& arguments, const Scene& scene, RenderStats& stats, const Progress& progress) {
+  const ViewOptions& view = arguments.view.sampling;
+  if (arguments.layers) return render_with_sums(scene, view, stats, progress);
+  Image image;
+  image.view = view;
+  image.frame = render(scene, view, stats, progress);
+  return image;
+}
+
+/// `image`: with its sums of light, if the frame is to have layers and is of Integrator::path.
+Bytes encoded(const Arguments& arguments, const SceneState& state, const Image& image,
               const std::optional<Frame>& before, const FrameMeta& meta, Console& console) {
+  const Frame& frame = image.frame;
   if (is_preview_name(arguments.output)) return encode_png(frame, {display_view_of_environment(), arguments.exposure});
   const PixelFormat format = arguments.float_frames ? PixelFormat::float32 : PixelFormat::half;
   if (!arguments.layers) return encode_exr(frame, meta, format);
   const ChangedPixels changed = before ? pixels_between(*before, frame) : ChangedPixels();
-  Bytes bytes = encode_layered_exr({state.scene(), arguments.view.sampling, frame, changed, format}, meta,
+  Bytes bytes = encode_layered_exr({state.scene(), image.view, frame, changed, format, &image.light_sums}, meta,
                                    console.stage("layers"));
   console.end_stage();
   return bytes;
@@ -77,10 +89,11 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   make_folders(std::filesystem::absolute(arguments.output).parent_path());
   span.emplace(console.trace(), "render");
   RenderStats stats;
-  const Frame frame = render(loaded.state->scene(), arguments.view.sampling, stats, console.stage("render"));
+  const Image image = rendered_image(arguments, loaded.state->scene(), stats, console.stage("render"));
+  const Frame& frame = image.frame;
   console.end_stage();
   span.emplace(console.trace(), "write frame");
-  const Bytes bytes = encoded(arguments, *loaded.state, frame, before, meta, console);
+  const Bytes bytes = encoded(arguments, *loaded.state, image, before, meta, console);
   console.check_interrupt();
   write_file(arguments.output, bytes);
   const bool is_half = !arguments.float_frames && !is_preview_name(arguments.output);

@@ -9,6 +9,7 @@
 #include "frame/frame_layers.h"
 #include "input/load_cache.h"
 #include "input/load_scene.h"
+#include "options/needless_options.h"
 #include "options/outputs.h"
 #include "replay/chosen_parameters.h"
 #include "replay/memory_needs.h"
@@ -73,7 +74,8 @@ std::unique_ptr<Residency> residency_of(const Arguments& arguments, const std::f
 /// A copy of the opened cache, for another run from the same state.
 OpenedCache copy_of(const OpenedCache& opened) {
   const SceneState& state = *opened.state;
-  return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids()),
+  return {std::make_unique<SceneState>(state.document(), state.scene().camera, state.pyramids(),
+                                       state.scene().integrator),
           opened.image,
           opened.scene_hash,
           opened.losses,
@@ -192,12 +194,27 @@ class ReplayCommand {
   CacheFacts facts_;
 };
 
+/// `manifest`: of the cache. Throws Error with exit code 3 if it is of another integrator than the command line says,
+/// UsageError if structures are asked for that its integrator has none of.
+void require_integrator(const Json& manifest, const Arguments& arguments) {
+  const std::string& cache = arguments.inputs[0];
+  const Integrator integrator = integrator_of(manifest);
+  if (arguments.integrator.value_or(integrator) != integrator)
+    throw Error(ExitCode::cache_mismatch, cache, "",
+                "the cache is of --integrator " + std::string(integrator_word(integrator)) +
+                    "; preprocess again with --integrator " + std::string(integrator_word(*arguments.integrator)));
+  if (integrator == Integrator::whitted) return;
+  if (const std::string option = option_of_whitted(arguments); !option.empty())
+    throw UsageError("replay " + option + ": it is for --integrator whitted, and " + printable(cache) +
+                     " is of --integrator path");
+}
+
 /// The structures of the cache, where the command line does not say otherwise; in words, what becomes of its tunnels if
 /// it does.
 void take_structures_of(const Json& manifest, Arguments& arguments, Console& console) {
   const Json& storage = manifest["content"]["storage"];
   const auto number = [&](const char* key) { return storage[key].get<std::uint32_t>(); };
-  StructureOptions stored;
+  StructureOptions stored = usual_structures(integrator_of(manifest));
   stored.groups = number("groups");
   stored.atoms = number("atoms");
   stored.color_trees_percent = storage["color_trees_percent"].get<double>();
@@ -227,6 +244,7 @@ ExitCode run_replay(const Arguments& given, Console& console) {
   const PreviewStyle previews{display_view_of_environment(), arguments.exposure};
   Json manifest;
   require_sound(read_manifest(cache, manifest), cache);
+  require_integrator(manifest, arguments);
   take_structures_of(manifest, arguments, console);
   std::vector<RunPlan> plans = plan_runs(arguments, journals, manifest, previews.view.get());
   for (const RunPlan& plan : plans) console.warn(plan.warnings());

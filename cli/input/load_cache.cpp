@@ -34,6 +34,11 @@ CacheContent load_cache(const std::string& cache) {
   return content;
 }
 
+Integrator integrator_of(const Json& manifest) {
+  return manifest["content"]["integrator"] == integrator_word(Integrator::path) ? Integrator::path
+                                                                                : Integrator::whitted;
+}
+
 CacheSizes cache_sizes(const Json& manifest) {
   CacheSizes sizes;
   const Json& content = manifest["content"];

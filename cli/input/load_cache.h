@@ -15,7 +15,8 @@ namespace relook {
 [[nodiscard]] ExitCode exit_code(CacheFault fault);
 /// Throws Error unless the answer is `none`.
 void require_sound(const CacheAnswer& answer, const std::string& cache);
-/// `manifest`: of read_manifest().
+/// `manifest`, here and below: of read_manifest().
+[[nodiscard]] Integrator integrator_of(const Json& manifest);
 [[nodiscard]] CacheSizes cache_sizes(const Json& manifest);
 /// Refuses any damage.
 [[nodiscard]] CacheContent load_cache(const std::string& cache);

@@ -86,7 +86,7 @@ LoadedDocument load_document(const std::string& path, const ViewArguments& view)
   const Bytes patch = has_patch ? read_input(view.look_patch) : Bytes();
   if (has_patch)
     loaded.document = patched(std::move(loaded.document), text_of(patch), input_name(view.look_patch), loaded.files);
-  std::ranges::copy(look_warnings(loaded.document), std::back_inserter(loaded.warnings));
+  std::ranges::copy(look_warnings(loaded.document, view.sampling.integrator), std::back_inserter(loaded.warnings));
   std::string digests = content_hash(path, loaded.document);
   if (has_patch) digests += hash128(patch);
   if (view.auto_lights) digests += "lights auto";
@@ -98,7 +98,7 @@ Camera set_up_view(LoadedDocument& loaded, const ViewArguments& view) {
   Camera camera = choose_camera(loaded.document, view.camera, view.width, view.height);
   if (view.camera.empty()) warn_of_choice(loaded, camera);
   if (view.auto_lights)
-    if (std::string said = add_auto_lights(loaded.document, camera); !said.empty())
+    if (std::string said = add_auto_lights(loaded.document, camera, view.sampling.integrator); !said.empty())
       loaded.warnings.push_back(std::move(said));
   return camera;
 }
@@ -115,7 +115,8 @@ LoadedScene load_scene(const std::string& path, const ViewArguments& view) {
   scene.hash = std::move(loaded.hash);
   scene.files = std::move(loaded.files);
   scene.warnings = std::move(loaded.warnings);
-  scene.state = std::make_unique<SceneState>(std::move(loaded.document), camera, std::make_shared<PyramidStore>());
+  scene.state = std::make_unique<SceneState>(std::move(loaded.document), camera, std::make_shared<PyramidStore>(),
+                                             view.sampling.integrator);
   if (!is_lit(scene.state->scene()))
     throw InputError(path, "", "the scene has no light: add some with --lights auto or --look PATCH.json");
   return scene;

@@ -64,8 +64,14 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
   if (!(std::fabs(arguments.exposure) <= kMostExposure))
     throw UsageError("--exposure: a number of stops from -100 to 100");
-  take_structures({}, arguments);
-  arguments.view.sampling.shadow_bits = arguments.shadow_bits.value_or(0);
+  ViewOptions& sampling = arguments.view.sampling;
+  if (!raw.integrator.empty())
+    arguments.integrator = static_cast<Integrator>(place_of(raw.integrator, kIntegratorWords, "--integrator"));
+  // A journal is for both: path sees all that can be edited.
+  sampling.integrator =
+      arguments.integrator.value_or(arguments.verb == Verb::journal ? Integrator::path : Integrator::whitted);
+  take_structures(usual_structures(sampling.integrator), arguments);
+  sampling.shadow_bits = arguments.shadow_bits.value_or(0);
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
 }
@@ -135,6 +141,13 @@ void resolve_inspect(const CLI::App& verb, const RawTexts& raw, Arguments& argum
 }
 
 }  // namespace
+
+StructureOptions usual_structures(Integrator integrator) {
+  StructureOptions structures;
+  if (integrator == Integrator::path) structures.tunnels = structures.groups = 0;
+  if (integrator == Integrator::path) structures.color_trees_percent = 0;
+  return structures;
+}
 
 void take_structures(const StructureOptions& others, Arguments& arguments) {
   StructureOptions& structures = arguments.structures;

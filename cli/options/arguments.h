@@ -55,6 +55,7 @@ struct Arguments {
   StructureOptions structures;
   NamedStructures named;                     // of `structures`
   std::optional<std::uint32_t> shadow_bits;  // preprocess: of the cache, 0; replay: what it must hold
+  std::optional<Integrator> integrator;      // of `view`, where it is given; replay: what the cache must be of
   std::size_t threads = 0;                   // 0: all
   bool quiet = false, json = false;
   ImportRules import;
@@ -99,6 +100,8 @@ struct ParsedCommandLine {
 };
 [[nodiscard]] ParsedCommandLine parse_command_line(int argc, const char* const* argv);
 
+/// The structures of an integrator where nothing else is said: those of whitted that path has none of are none.
+[[nodiscard]] StructureOptions usual_structures(Integrator integrator);
 /// What the command line does not say of structures becomes that of `others`.
 void take_structures(const StructureOptions& others, Arguments& arguments);
 

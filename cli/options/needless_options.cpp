@@ -9,6 +9,8 @@
 namespace relook {
 namespace {
 
+constexpr double kAll = 100;  // per cent
+
 const auto kAnyApp = [](const CLI::App*) { return true; };
 
 /// The verb that was given; `name` becomes "journal wedge", "replay".
@@ -58,11 +60,21 @@ struct Condition {
   const char* reason;
 };
 
+/// What only paths have.
+std::vector<Condition> conditions_of_view(const ViewArguments& view) {
+  const bool is_whitted = view.sampling.integrator == Integrator::whitted;
+  constexpr const char* kReason = "it is for --integrator path";
+  return {{"--diffuse-depth", is_whitted, kReason}, {"--glossy-depth", is_whitted, kReason}};
+}
+
 std::vector<Condition> conditions_of(const Arguments& arguments) {
+  std::vector<Condition> conditions = conditions_of_view(arguments.view);
   switch (arguments.verb) {
     case Verb::render: {
       const bool is_png = is_preview_name(arguments.output);
-      return {{"--float", is_png, "a PNG has no floats"}, {"--aovs", is_png, "a PNG has no layers"}};
+      conditions.push_back({"--float", is_png, "a PNG has no floats"});
+      conditions.push_back({"--aovs", is_png, "a PNG has no layers"});
+      return conditions;
     }
     case Verb::replay: {
       return {{"--baseline", arguments.report == ReportKind::none, "it is for the report, which --report none omits"}};
@@ -76,7 +88,7 @@ std::vector<Condition> conditions_of(const Arguments& arguments) {
               {"--warnflip", arguments.exact_only, kExact}};
     }
     default:
-      return {};
+      return conditions;
   }
 }
 
@@ -102,6 +114,19 @@ void require_effects(const CLI::App& verb, const Arguments& arguments) {
   for (const Condition& condition : conditions_of(arguments))
     if (condition.is_idle && is_given(verb, condition.option))
       throw UsageError(verb.get_name() + " " + condition.option + ": " + condition.reason);
+  if (arguments.verb != Verb::preprocess || arguments.view.sampling.integrator == Integrator::whitted) return;
+  if (const std::string option = option_of_whitted(arguments); !option.empty())
+    throw UsageError(verb.get_name() + " " + option + ": it is for --integrator whitted");
+}
+
+std::string option_of_whitted(const Arguments& arguments) {
+  const NamedStructures& named = arguments.named;
+  if (arguments.shadow_bits.value_or(0) > 0) return "--shadow-bits";
+  if (named.tunnels.value_or(0) > 0) return "--tunnels";
+  if (named.groups.value_or(0) > 0) return "--groups";
+  if (named.color_trees_percent.value_or(0) > 0) return "--color-trees";
+  if (arguments.structures.ray_trees_percent < kAll) return "--ray-trees";
+  return arguments.structures.params.empty() ? "" : "--params";
 }
 
 }  // namespace relook

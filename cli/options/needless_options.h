@@ -13,8 +13,12 @@ namespace relook {
 [[nodiscard]] std::string refused_line_text(const CLI::App& app, std::span<const char* const> words,
                                             const std::string& otherwise);
 
-/// Throws UsageError for an option that has no effect beside the others: --policy without --memory, --float for a PNG.
+/// Throws UsageError for an option that has no effect beside the others: --float for a PNG, --tunnels with path.
 /// What sweeps and scripts give to all of their commands alike stays (--atoms beside --groups 0).
 void require_effects(const CLI::App& verb, const Arguments& arguments);
+
+/// What is asked of structures that images of Integrator::path have none of: the first such option, or "". To ask for
+/// none is no fault.
+[[nodiscard]] std::string option_of_whitted(const Arguments& arguments);
 
 }  // namespace relook

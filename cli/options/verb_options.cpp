@@ -48,6 +48,11 @@ CLI::Option* add_lights(CLI::App& verb, RawTexts& raw, const char* help = "auto:
   return verb.add_option("--lights", raw.lights, help)->check(CLI::IsMember({"auto"}));
 }
 
+void add_integrator(CLI::App& verb, RawTexts& raw, const char* help) {
+  verb.add_option("--integrator", raw.integrator, help)
+      ->check(CLI::IsMember(std::vector<std::string>{kIntegratorWords.begin(), kIntegratorWords.end()}));
+}
+
 /// Adds the VIEW options but --look, and returns them.
 std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   ViewArguments& view = arguments.view;
@@ -57,6 +62,11 @@ std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, R
   verb.add_option("--resolution", raw.resolution, "WxH in pixels; 960x540");
   verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 256));
   verb.add_option("--max-depth", view.sampling.max_depth, "Generations of rays; 6")->check(CLI::Range(1, 16));
+  add_integrator(verb, raw, "whitted: lamps without size, sharp shadows; path: every light, soft shadows; whitted");
+  verb.add_option("--diffuse-depth", view.sampling.diffuse_depth, "Of path: bounces off diffuse surfaces; 0")
+      ->check(CLI::Range(0, 16));
+  verb.add_option("--glossy-depth", view.sampling.glossy_depth, "Of path: bounces off glossy surfaces; 4")
+      ->check(CLI::Range(0, 16));
   const std::vector<CLI::Option*> options = verb.get_options();
   return {options.begin() + before, options.end()};
 }
@@ -193,6 +203,7 @@ void add_replay(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_option("--scene", arguments.scene, "Refuse a cache that is not of this scene");
   add_look_patch(replay, arguments, "The patch that --scene was preprocessed with")->needs("--scene");
   add_lights(replay, raw, "auto: --scene was preprocessed with --lights auto")->needs("--scene");
+  add_integrator(replay, raw, "Refuse a cache of the other integrator");
   add_frame_options(replay, arguments);
   add_structures(replay, arguments, raw);
   replay

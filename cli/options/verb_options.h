@@ -14,6 +14,7 @@ namespace relook {
 struct RawTexts {
   std::string report = "html";
   std::string resolution, memory, import_memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
+  std::string integrator;
   std::string json;  // compare, plan; "-": to stdout
   std::optional<std::string> steps;
   std::vector<const CLI::Option*> inspection_view;  // VIEW of inspect

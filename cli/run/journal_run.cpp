@@ -284,8 +284,7 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   meta.scene_hash = report_.scene_hash;
   meta.edits_hash = entry.edits_hash;
   const bool is_numbered = entry.place.number.has_value();
-  folder_.write_frame(entry, replayer_.image(), {result.changed_pixels, follows_last_}, std::move(meta),
-                      arguments_.layers ? &replayer_.state().scene() : nullptr);
+  folder_.write_frame(entry, replayer_, {result.changed_pixels, follows_last_}, std::move(meta), arguments_.layers);
   follows_last_ = true;
   warn_of_clipping(entry);
   if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
@@ -306,7 +305,7 @@ Frame JournalRun::full_render() {
   Residency& residency = replayer_.residency();
   const Residency::Aside aside = residency.begin_aside();
   const SceneState& state = replayer_.state();
-  const Scene scene = compiled_scene(state.document(), report_.camera, *state.pyramids());
+  const Scene scene = compiled_scene(state.document(), report_.camera, *state.pyramids(), report_.view.integrator);
   RenderStats stats;
   const TraceScope span = console_.span("full render");
   const auto progress = [&residency, shown = console_.stage("full render")](double share) {

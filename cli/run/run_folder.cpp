@@ -73,10 +73,11 @@ RunFolder::RunFolder(RunPlan& plan, const Journal& journal, Style style)
 
 RunFolder::~RunFolder() = default;
 
-void RunFolder::write_frame(StepReport& step, const Image& image, const FrameChange& change, FrameMeta meta,
-                            const Scene* layers) {
+void RunFolder::write_frame(StepReport& step, Replayer& replayer, const FrameChange& change, FrameMeta meta,
+                            bool has_layers) {
   const auto start = std::chrono::steady_clock::now();
   finish_writing();
+  const Image& image = replayer.image();
   const Frame& frame = image.frame;
   const bool takes_all = !std::exchange(has_written_, true) || !change.follows_last;
   const auto take = [&](auto& encoder) {
@@ -85,9 +86,9 @@ void RunFolder::write_frame(StepReport& step, const Image& image, const FrameCha
     else
       encoder.update(frame, change.pixels);
   };
-  if (layers == nullptr) take(encoder_);
+  if (!has_layers) take(encoder_);
   if (style_.format == PixelFormat::half)
-    clipped_pixels_ = layers == nullptr ? encoder_.clipped_pixels() : relook::clipped_pixels(frame);
+    clipped_pixels_ = has_layers ? relook::clipped_pixels(frame) : encoder_.clipped_pixels();
   take(preview_encoder_);
   preview_is_stale_ = preview_is_stale_ || takes_all || !change.pixels.empty();
   meta.step = step_label(step.place);
@@ -96,7 +97,10 @@ void RunFolder::write_frame(StepReport& step, const Image& image, const FrameCha
   step.frame = frame_name(step.place);
   step.preview = preview_name(step.place);
   std::optional<Bytes> layered;
-  if (layers != nullptr) layered = encode_layered_exr({*layers, image.view, frame, change.pixels, style_.format}, meta);
+  if (has_layers)
+    layered = encode_layered_exr({replayer.state().scene(), image.view, frame, change.pixels, style_.format,
+                                  &image.light_sums, &replayer.residency()},
+                                 meta);
   // Not before: what has thrown until here is no reason to forget finished frames.
   std::vector<StepReport> ready = std::exchange(notes_, {});
   ++own_frames_;

@@ -43,9 +43,8 @@ class RunFolder {
   /// Writes the frame and preview of a step and sets its files, seconds.write and command. Only tiles of changed pixels
   /// are compressed again, and all of that happens while the next step runs: seconds.write is what this step waits for,
   /// and what goes wrong is thrown by the next call. `meta.step` and `meta.change_class` are taken from `step`.
-  /// `layers`: the frame's scene, if it is to have layers; they are made here, which is part of seconds.write.
-  void write_frame(StepReport& step, const Image& image, const FrameChange& change, FrameMeta meta,
-                   const Scene* layers);
+  /// `has_layers`: they are made here, which is part of seconds.write.
+  void write_frame(StepReport& step, Replayer& replayer, const FrameChange& change, FrameMeta meta, bool has_layers);
   /// The pixels of the frame last given to write_frame() that half cannot hold, layers aside; 0 where frames are
   /// float32.
   [[nodiscard]] std::uint64_t clipped_pixels() const { return clipped_pixels_; }

@@ -279,6 +279,7 @@ bool RunPlan::has_true_head(const Json& head) const {
                                std::to_string(resolution.at(1).integer(1, INT32_MAX));
     return pixels == source_.at("resolution") && view.at("samples").value().dump() == source_.at("samples") &&
            view.at("scene").at("hash").value() == source_.at("scene") &&
+           view.at("options").at("integrator").value() == source_.at("integrator") &&
            view.at("options").at("max_depth").value().dump() == source_.at("max_depth");
   } catch (const InputError&) {
     return false;

@@ -49,7 +49,8 @@ bool is_alike_on_all(const Material& material) {
 /// The strongest class over all meshes that show the material.
 ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
   const Material& after = scene.material(change.id);
-  if (is_alike_on_all(change.before) && is_alike_on_all(after)) return class_of(change.before, after, Mesh(), scene.integrator);
+  if (is_alike_on_all(change.before) && is_alike_on_all(after))
+    return class_of(change.before, after, Mesh(), scene.integrator);
   ChangeClass strongest = ChangeClass::color;
   for (MeshId mesh : meshes_with(scene, change.id))
     strongest = std::max(strongest, class_of(change.before, after, scene.mesh(mesh), scene.integrator));

@@ -27,7 +27,7 @@ std::pair<float, float> scaled(float factor, float smallest, float largest) {
 int alpha_bucket(float roughness) {
   constexpr float kSmoothest = 0.05F;
   const float clamped = std::clamp(roughness, kSmoothest, 1.0F);
-  return std::ilogb(clamped * clamped);
+  return std::min(std::ilogb(clamped * clamped), -1);  // 1 belongs to the last but one
 }
 Buckets alpha_buckets(float factor, float smallest, float largest) {
   const auto [low, high] = scaled(factor, smallest, largest);
@@ -58,6 +58,7 @@ bool differs(Buckets before, Buckets after, bool is_same_input) {
 
 /// The same lobes on both? Factors decide, never a texel.
 bool has_same_lobes(const Material& a, const Material& b) {
+  if (material_lobes(a) != material_lobes(b)) return false;
   const auto agree = [](auto x, auto y) { return (x == 0) == (y == 0); };
   return agree(a.clearcoat, b.clearcoat) && agree(a.specular, b.specular) && agree(a.transmission, b.transmission) &&
          agree(a.iridescence, b.iridescence) && is_black(a.specular_color) == is_black(b.specular_color) &&

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/layer_names.h"
 #include "base/tiles.h"
+#include "scene/light_sums.h"
 
 namespace relook {
 namespace {
@@ -57,7 +58,8 @@ void require_layers(const Scene& scene) {
                         kMostLamps = (kMostChannels - 100) / 3;
   if (scene.light_order.size() > kMostLamps)
     throw UsageError("--aovs: a frame holds layers of at most " + std::to_string(kMostLamps) +
-                     " lamps; the scene has " + std::to_string(scene.light_order.size()));
+                     (scene.integrator == Integrator::path ? " lights" : " lamps") + "; the scene has " +
+                     std::to_string(scene.light_order.size()));
 }
 
 FrameLayers::FrameLayers(const Scene& scene, std::uint32_t samples, PixelFormat format)
@@ -78,12 +80,27 @@ FrameLayers::FrameLayers(const Scene& scene, std::uint32_t samples, PixelFormat 
     for (auto& attribute : matte->attributes()) attributes.push_back(std::move(attribute));
   }
   parts = {of_aspect(Aspect::albedo), of_aspect(Aspect::normal)};
+  if (scene.integrator == Integrator::path) {
+    add_lights(scene);
+    return;
+  }
   add_sum("relook:lights", parts_by_light(scene), "lights_rest");
   add_sum("relook:paths", parts_by_path(), "paths_rest");
 }
 
 void FrameLayers::add_color(const std::string& layer) {
   for (const char* name : {".R", ".G", ".B"}) channels.push_back({layer + name, PixelFormat::float32});
+}
+
+void FrameLayers::add_lights(const Scene& scene) {
+  light_column = channels.size();
+  std::string names;
+  for (const LightSum& sum : light_sums(scene)) {
+    light_colors.push_back(sum.color);
+    add_color(sum.name);
+    names += (names.empty() ? "" : " ") + sum.name;
+  }
+  attributes.emplace_back("relook:lights", names);
 }
 
 void FrameLayers::add_sum(const char* attribute, const NamedParts& layers, const std::string& rest) {

@@ -1,14 +1,16 @@
 // What layers a frame with --aovs has, as a table that follows from the scene: names of channels, header attributes,
 // and the parts of the colour that make up each sum. LAYERS.md lists them.
 //
-// A sum is a list of layers whose float32 values, added from first to last, are the frame's R, G and B in the file, bit
-// for bit. Its last layer, the rest, is there for that: what rounding leaves between the others and the frame.
+// A sum is a list of layers whose float32 values, added from first to last, are the frame's R, G and B, bit for bit.
+// Under Integrator::whitted it is a list of parts, and its last layer, the rest, is there for that: what rounding
+// leaves between the others and the frame in the file. A frame of Integrator::path is such a sum: a layer a light.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "color/part_shader.h"
 #include "frame/cryptomatte.h"
+#include "frame/light_sums.h"
 
 namespace relook {
 
@@ -32,7 +34,7 @@ struct LayerSum {
   std::size_t first_column = 0;
 };
 
-/// Throws UsageError if the scene has more lamps than a frame can have layers of.
+/// Throws UsageError if the scene has more lights than a frame can have layers of.
 void require_layers(const Scene& scene);
 
 struct FrameLayers {
@@ -42,13 +44,16 @@ struct FrameLayers {
   std::vector<ExrChannel> channels;  // by column
   ExrAttributes attributes;
   std::vector<LayerPart> parts;  // the first two: albedo and normal
-  std::vector<LayerSum> sums;
+  std::vector<LayerSum> sums;              // of whitted
+  std::vector<LightColor> light_colors;    // of path: by light_sums(), whose layers have the columns
+  std::size_t light_column = 0;            // from this one on, three a light
   Cryptomatte objects, materials;
   std::size_t object_column = 0, material_column = 0;
 
  private:
   void add_sum(const char* attribute, const std::vector<std::pair<std::string, LayerPart>>& layers,
                const std::string& rest);
+  void add_lights(const Scene& scene);
   void add_color(const std::string& layer);
 };
 

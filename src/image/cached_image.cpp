@@ -139,6 +139,7 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   CacheContent scene_part;
   scene_part.document = content.document;
   scene_part.camera = content.camera;
+  scene_part.image.view = content.image.view;
   scene_part.pyramids = content.pyramids;
   scene_part.objects = content.objects;
   scene_part.lights = content.lights;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/error.h"
 #include "frame/exact_sum.h"
 
 namespace relook {
@@ -15,14 +16,25 @@ Uv first_uv(const Mesh& mesh, const Hit& hit) {
   return at(0) * (1.0F - hit.u - hit.v) + at(1) * hit.u + at(2) * hit.v;
 }
 
+/// `scene` as its first hits need it, and with it nothing that only rays of Integrator::path reach.
+Scene scene_of_first_hits(const Scene& scene) {
+  Scene hits = scene;
+  hits.integrator = Integrator::whitted;
+  hits.light_order.clear();
+  hits.ambient = Color(0, 0, 0);
+  hits.environment = {};
+  return hits;
+}
+
 }  // namespace
 
 LayerScene::LayerScene(const Scene& scene, const ViewOptions& options, const FrameLayers& frame_layers)
     : view(options),
       layers(frame_layers),
-      rays(scene),
+      first_hits(scene.integrator == Integrator::path ? std::optional(scene_of_first_hits(scene)) : std::nullopt),
+      rays(first_hits ? *first_hits : scene),
       level(tracer.build(rays)),
-      grow{rays, &level, options.max_depth, 0} {
+      grow{rays, &level, first_hits ? 1 : options.max_depth, 0} {
   for (const Object& object : scene.objects) {
     object_ids.push_back(cryptomatte_id(object.node));
     material_ids.push_back(object.material.is_none() ? 0 : cryptomatte_id(matte_name(scene.material(object.material))));
@@ -35,7 +47,8 @@ LayerTile::LayerTile(const LayerScene& scene, ProgramTable& programs)
       shader_(scene.rays, programs, scene.layers.parts),
       columns_(scene.layers.channels.size()) {}
 
-const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame, const TileMask* changed) {
+const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame, const TileMask* changed,
+                                       const PackedSums* sums) {
   const std::uint32_t samples = s_.view.samples;
   ChunkSize chunk(s_.grow.layout().lights);
   for (std::vector<float>& column : columns_) column.assign(rect.pixels(), 0.0F);
@@ -52,6 +65,7 @@ const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame,
   }
   set_beauty(rect, frame, changed);
   settle_sums(rect.pixels());
+  if (sums != nullptr) set_lights(*sums);
   return columns_;
 }
 
@@ -130,6 +144,19 @@ void LayerTile::set_beauty(const TileRect& rect, const Frame& frame, const TileM
       if (changed != nullptr && ((*changed)[y - rect.y0] >> (x - rect.x0) & 1U) != 0)
         put(kChangedColumn, pixel, {1.0F});
     }
+}
+
+// Without a -0, which would be the sum of layers that are all -0, and of the frame never.
+void LayerTile::set_lights(const PackedSums& sums) {
+  const std::vector<LightColor>& colors = s_.layers.light_colors;
+  require(sums.sums() == colors.size(), "a sum a light");
+  for (std::size_t light = 0; light < colors.size(); ++light) {
+    if (sums.is_zero(light)) continue;
+    for (std::uint32_t pixel = 0; pixel < sums.pixels(); ++pixel) {
+      const Color color = layer(sums, light, pixel, colors[light], s_.view.samples);
+      put(s_.layers.light_column + 3 * light, pixel, {color.x + 0.0F, color.y + 0.0F, color.z + 0.0F});
+    }
+  }
 }
 
 void LayerTile::settle_sums(std::uint32_t pixels) {

@@ -1,6 +1,8 @@
-// The values of a frame's layers, tile by tile, from ray trees traced for them.
+// The values of a frame's layers, tile by tile, from ray trees traced for them; what lights give to frames of
+// Integrator::path is weighted from their sums.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "frame/changed_pixels.h"
@@ -19,6 +21,7 @@ struct LayerScene {
 
   const ViewOptions& view;
   const FrameLayers& layers;
+  std::optional<Scene> first_hits;  // of path: the scene without lights, of whose trees only the first hits are used
   ColorScene rays;
   Tracer tracer{false};
   Tracer::TopLevel level;
@@ -31,8 +34,9 @@ class LayerTile {
  public:
   LayerTile(const LayerScene& scene, ProgramTable& programs);
   /// The values of a tile's layers, valid until the next call. `frame`: of the scene; `changed`: which pixels of the
-  /// tile have changed, null for none.
-  [[nodiscard]] const LayerColumns& columns(const TileRect& rect, const Frame& frame, const TileMask* changed);
+  /// tile have changed, null for none; `sums`: of the tile's light, null under Integrator::whitted.
+  [[nodiscard]] const LayerColumns& columns(const TileRect& rect, const Frame& frame, const TileMask* changed,
+                                            const PackedSums* sums);
 
  private:
   void trace(const TileRect& rect, std::uint32_t first_pixel, std::uint32_t last_pixel);
@@ -41,6 +45,7 @@ class LayerTile {
   void set_parts(std::uint32_t pixel, std::uint32_t first_sample);
   void set_beauty(const TileRect& rect, const Frame& frame, const TileMask* changed);
   void settle_sums(std::uint32_t pixels);
+  void set_lights(const PackedSums& sums);
   void put(std::size_t column, std::uint32_t pixel, std::initializer_list<float> values);
 
   const LayerScene& s_;

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "frame/half_bits.h"
@@ -60,6 +61,10 @@ Bytes encode_layered_exr(const LayeredFrame& layered, const FrameMeta& meta, con
   std::vector<Bytes> tiles(tile_count(frame.width, frame.height));
   const std::vector<const TileMask*> masks = masks_by_tile(layered.changed, tiles.size());
 
+  const bool is_path = layered.scene.integrator == Integrator::path;
+  require(!is_path || (layered.light_sums != nullptr && layered.light_sums->size() == tiles.size()),
+          "layers of path need the sums of light of all tiles");
+
   ProgramTable programs;
   Pool<LayerTile> workers;
   Pool<TileCompressor> compressors;
@@ -69,7 +74,11 @@ Bytes encode_layered_exr(const LayeredFrame& layered, const FrameMeta& meta, con
     const TileRect rect = tile_rect(tile, frame.width, frame.height);
     const auto worker = workers.take([&] { return std::make_unique<LayerTile>(scene, programs); });
     const auto compressor = compressors.take([] { return std::make_unique<TileCompressor>(); });
-    tiles[tile] = compressor->zip(tile_bytes(worker->columns(rect, frame, masks[tile]), rect, layers, order));
+    const Residency::Lease lease = is_path && layered.residency != nullptr
+                                       ? layered.residency->use(PieceKind::light_sums, tile)
+                                       : Residency::Lease();
+    const PackedSums* const sums = is_path ? &(*layered.light_sums)[tile] : nullptr;
+    tiles[tile] = compressor->zip(tile_bytes(worker->columns(rect, frame, masks[tile], sums), rect, layers, order));
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
     progress(static_cast<double>(++done) / static_cast<double>(tiles.size()));

@@ -29,7 +29,8 @@ class ObjectChanges {
   void compare_material(ObjectId id, const Material& after) {
     if (id.index() >= ray_scene_.size() || !scene_.object(id).alive) return;
     const RayObject& before = ray_scene_.object(id);
-    if (before.alive) flag(id, effect_of(*before.material, before.optics, after, surface_optics(after, *before.mesh)));
+    if (before.alive) flag(id, effect_of(*before.material, before.optics, after, surface_optics(after, *before.mesh),
+                                          scene_.integrator));
   }
 
  private:

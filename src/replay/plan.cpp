@@ -115,7 +115,7 @@ Plan plan_replay(const LookDocument& document, const Camera& camera, const std::
     const Progress part = [&](double done) {
       if (progress) progress(first + share * done);
     };
-    return ProxyReplay(SceneState(std::move(copy), proxy, pyramids), view).run(journal, part);
+    return ProxyReplay(SceneState(std::move(copy), proxy, pyramids, view.integrator), view).run(journal, part);
   };
   const std::vector<PlannedFrame> few = replay(small, 0, 0.2);
   Plan plan;

@@ -76,7 +76,11 @@ Json number_json(const StepReport& step, bool of_drag) {
 
 Json options_json(const RunReport& report) {
   const StructureOptions& structures = report.structures;
-  return {{"max_depth", report.view.max_depth},
+  const bool is_path = report.view.integrator == Integrator::path;
+  return {{"integrator", integrator_word(report.view.integrator)},
+          {"max_depth", report.view.max_depth},
+          {"diffuse_depth", is_path ? Json(report.view.diffuse_depth) : Json(nullptr)},
+          {"glossy_depth", is_path ? Json(report.view.glossy_depth) : Json(nullptr)},
           {"memory", or_null(structures.memory_bytes)},
           {"policy", structures.policy},
           {"disk", or_null(structures.disk_bytes)},

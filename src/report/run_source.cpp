@@ -15,6 +15,7 @@ Json run_source(const Json& manifest, const FrameStyle& style) {
           {"resolution", content.at("camera").at("width").dump() + "x" + content.at("camera").at("height").dump()},
           {"camera", content.at("camera").at("name")},
           {"samples", content.at("samples").dump()},
+          {"integrator", content.at("integrator")},
           {"max_depth", content.at("max_depth").dump()},
           {"options", content.at("options")},
           {"arithmetic", content.at("arithmetic")},
@@ -32,11 +33,12 @@ std::optional<std::string> difference_of_sources(const Json& there, const Json& 
     return value.is_string() ? printable(value.get<std::string>()) : value.dump();
   };
   const auto differs = [&](const char* key) { return text(there, key) != text(here, key); };
-  if (!there.is_object()) return "a run of another version of relook";
+  if (!there.is_object() || !there.contains("integrator")) return "a run of another version of relook";
   if (differs("scene")) return "a run of another scene";
-  constexpr std::array<std::pair<const char*, const char*>, 5> kSaid{{{"resolution", "frames of "},
+  constexpr std::array<std::pair<const char*, const char*>, 6> kSaid{{{"resolution", "frames of "},
                                                                       {"camera", "frames of camera "},
                                                                       {"samples", "frames with samples a pixel: "},
+                                                                      {"integrator", "frames of --integrator "},
                                                                       {"max_depth", "frames of a depth of "},
                                                                       {"frames", "frames in "}}};
   for (const auto& [key, what] : kSaid)

@@ -1,5 +1,5 @@
-// The two definitions of a picture. `whitted`: lamps without size, sharp shadows and mirrors (color/SHADING.md). `path`:
-// every light of the look document, estimated by samples. Chosen when a scene is opened, kept by its cache.
+// The two definitions of a picture. `whitted`: lamps without size, sharp shadows and mirrors (color/SHADING.md).
+// `path`: every light of the look document, estimated by samples. Chosen when a scene is opened, kept by its cache.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -10,8 +10,8 @@
 
 namespace relook {
 
-/// One term of a frame: color times the sum of the unit light that reaches a pixel. Without a background of its own, its
-/// sum is empty and its colour black, and the camera sees sky and suns.
+/// One term of a frame: color times the sum of the unit light that reaches a pixel. Without a background of its own,
+/// its sum is empty and its colour black, and the camera sees sky and suns.
 struct LightSum {
   enum class Kind : std::uint8_t { light, sky, ambient, background, unlit } kind = Kind::light;
   LightId light;                        // kind light: this one
@@ -19,8 +19,8 @@ struct LightSum {
   std::array<double, 3> color{1, 1, 1}; // linear RGB: colour times intensity; 1 of unlit
 };
 
-/// The sums of a scene of Integrator::path, in their order: the lights of Scene::light_order with the sky right before the suns, then
-/// ambient, background and unlit, which are always there.
+/// The sums of a scene of Integrator::path, in their order: the lights of Scene::light_order with the sky right before
+/// the suns, then ambient, background and unlit, which are always there.
 [[nodiscard]] std::vector<LightSum> light_sums(const Scene& scene);
 
 }  // namespace relook

@@ -71,4 +71,16 @@ SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
   return optics;
 }
 
+MaterialLobes material_lobes(const Material& material) {
+  if (material.model == IlluminationModel::unlit) return {};
+  if (material.model == IlluminationModel::blinn_phong) return {.diffuse = true};
+  const auto is_textured = [&](Slot slot) { return material.slot(slot).kind != TextureKind::none; };
+  const bool is_metal = material.metallic >= 1 && !is_textured(Slot::metallic_roughness);
+  const bool lets_all_through = material.transmission >= 1 && !is_textured(Slot::transmission);
+  const bool is_cloth = material.sheen_color != Color(0, 0, 0);
+  return {.diffuse = (!is_metal && !lets_all_through) || is_cloth,
+          .specular = material.specular > 0 || material.metallic > 0,
+          .coat = material.clearcoat > 0};
+}
+
 }  // namespace relook

@@ -33,6 +33,14 @@ struct SurfaceOptics {
 
 [[nodiscard]] SurfaceOptics surface_optics(const Material& material, const Mesh& mesh);
 
+/// The lobes that a material has under Integrator::path on its outer side: decided by factors, never by a texel. Sheen
+/// goes with the diffuse one, and so does the power lobe of blinn-phong.
+struct MaterialLobes {
+  bool diffuse = false, specular = false, coat = false;
+  bool operator==(const MaterialLobes&) const = default;
+};
+[[nodiscard]] MaterialLobes material_lobes(const Material& material);
+
 /// Smallest and largest linear value that a slot multiplies its factor by; (1, 1) for an empty slot.
 [[nodiscard]] std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot);
 

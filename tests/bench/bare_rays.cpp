@@ -12,6 +12,7 @@
 
 #include "base/parallel.h"
 #include "image/sampling.h"
+#include "image/tile_light.h"
 #include "trace/shadow/shadow_segment.h"
 #include "trace/tree/grow.h"
 
@@ -25,11 +26,11 @@ struct TileRays {
 /// The rays and shadow segments of one tile, sample by sample, in the order in which the full render shoots them.
 TileRays rays_of(const RayScene& ray_scene, const Image& image, std::size_t tile) {
   const TileRect rect = tile_rect(tile, image.frame.width, image.frame.height);
-  const GrowScene grow{ray_scene, nullptr, image.view.max_depth, image.view.shadow_bits};
+  const GrowScene grow = grow_scene(ray_scene, nullptr, image.view, image.view.shadow_bits);
   const PrimaryRays primaries(ray_scene.camera(), image.view);
   TileRays result;
   GrowCounters counters;
-TreeBlock block;
+  TreeBlock block;
   for (std::uint32_t sample = 0; sample < sample_count(rect, image.view.samples); ++sample) {
     const TileTrees& trees = image.trees[tile];
     const StoredTree stored{PathCursor(image.paths.words(trees.paths[sample]), grow.layout()),

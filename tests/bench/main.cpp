@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "budget.h"
 #include "growth.h"
+#include "light.h"
 #include "peaks.h"
 #include "scene_measures.h"
 #include "tunnels.h"
@@ -21,10 +22,11 @@ struct Measure {
   void (*print)(const BenchOptions&);
   std::uint32_t width = 1920, height = 1080;  // unless the command line has others
 };
-constexpr std::array<Measure, 4> kMeasures{Measure{"tables", print_tables, 256, 256},
+constexpr std::array<Measure, 5> kMeasures{Measure{"tables", print_tables, 256, 256},
                                            {"tunnels", print_tunnels},
                                            {"growth", print_growth},
-                                           {"budget", print_budgets}};
+                                           {"budget", print_budgets},
+                                           {"light", print_light, 960, 540}};
 
 void run(int count, char** arguments) {
   const std::string_view name = count > 1 ? arguments[1] : "";

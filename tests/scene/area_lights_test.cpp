@@ -1,5 +1,5 @@
-// EXT_lights_area (draft, glTF pull request 2525) in a file: one section of lights with those of KHR_lights_punctual, and
-// one sentence for each way to write it wrong.
+// EXT_lights_area (draft, glTF pull request 2525) in a file: one section of lights with those of KHR_lights_punctual,
+// and one sentence for each way to write it wrong.
 #include "import_values.h"
 #include "look_fixture.h"
 #include "scene/look/look_names.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "look_fixture.h"
-#include "scene/compile/light_shape.h"
+#include "scene/compile/place_light.h"
 #include "scene/light_sums.h"
 #include "scene/look/look_warnings.h"
 

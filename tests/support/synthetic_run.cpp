@@ -37,7 +37,7 @@ SyntheticRun::SyntheticRun(std::filesystem::path folder, std::uint32_t width, st
           {"camera", "Camera"},
           {"resolution", {width, height}},
           {"samples", 1},
-          {"options", {{"max_depth", 6}}},
+          {"options", {{"integrator", "whitted"}, {"max_depth", 6}}},
           {"machine", {{"threads", 2}, {"cpu", "unknown"}}},
           {"full_render_seconds", 0.5},
           {"cache_bytes", {{"total", 1000}}},

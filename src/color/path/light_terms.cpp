@@ -28,7 +28,7 @@ std::optional<LightTerm> lamp_term(const RayNode& node, const RayLight& ray_ligh
     const Direction way = ray_light.position - node.point.position;
     const float distance2 = std::fmax(way.dot(way), 1e-8F);
     term.way = way / std::sqrt(distance2);
-    share = share / (node.ray.path.is_eye ? distance2 : std::fmax(distance2, kLeastDistance2));
+    share = share / (node.ray.path.from.is_none() ? distance2 : std::fmax(distance2, kLeastDistance2));
   } else {
     term.way = -ray_light.direction;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "scene/compile/compile_scene.h"
-#include "scene/compile/light_shape.h"
+#include "scene/compile/place_light.h"
 #include "scene/look/look_schema.h"
 
 namespace relook {

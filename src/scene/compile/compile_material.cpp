@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
-#include "scene/compile/light_shape.h"
+#include "scene/compile/place_light.h"
 #include "scene/look/look_schema.h"
 #include "scene/texture/image_stream.h"
 

@@ -25,8 +25,8 @@ struct CompileContext {
 void set_fields(const Json& value, Material& material, std::span<const MaterialRow> rows = material_rows());
 [[nodiscard]] Displacement compile_displacement(const CompileContext& context, const Json& value,
                                                 const std::string& pointer);
-/// Everything of a light but its node, and what it takes from there; of an area the half axes that it has on a node that
-/// stands at the origin.
+/// Everything of a light but its node, and what it takes from there; of an area the half axes that it has on a node
+/// that stands at the origin.
 [[nodiscard]] Light compile_light(std::string_view file, const std::string& name, const Json& value,
                                   const std::string& pointer, Integrator integrator = Integrator::whitted);
 [[nodiscard]] Environment compile_environment(const CompileContext& context, const Json& value, Integrator integrator);

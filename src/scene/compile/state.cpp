@@ -21,7 +21,8 @@ std::vector<CompiledEntity> checked_entities(const LookDocument& document) {
   return entities;
 }
 
-/// Compiles a whole document. `scene` has its integrator, its assets and its camera, and nothing else; `index` is empty.
+/// Compiles a whole document. `scene` has its integrator, its assets and its camera, and nothing else; `index` is
+/// empty.
 void compile_all(const LookDocument& document, PyramidStore& pyramids, Scene& scene, SceneIndex& index) {
   const std::vector<CompiledEntity> entities = checked_entities(document);
   decode_images(document, pyramids);

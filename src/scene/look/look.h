@@ -39,8 +39,8 @@ struct LookDocument {
 void fill_defaults(Section section, Json& value);
 
 /// --lights auto: adds lights and nodes `key`, `fill` and `rim`, which shine from outside, and a `lamp` at the camera
-/// if it stands in a closed room; under Integrator::path a grey environment where there is none. Returns a sentence about
-/// the lamp, or "" if there is none.
+/// if it stands in a closed room; under Integrator::path a grey environment where there is none. Returns a sentence
+/// about the lamp, or "" if there is none.
 [[nodiscard]] std::string add_auto_lights(LookDocument& document, const Camera& camera,
                                           Integrator integrator = Integrator::whitted);
 

@@ -42,8 +42,8 @@ class UniqueNames {
 /// glTF index of the scene file (which has no leading zeros), else the name of the entity with that index.
 [[nodiscard]] std::string resolve_token(const LookDocument& document, Section section, const std::string& token);
 
-/// Turns the tokens of a pointer to a light in glTF, which stands in KHR_lights_punctual or EXT_lights_area of the root,
-/// into those of the look document, where both stand in /lights. Others stay.
+/// Turns the tokens of a pointer to a light in glTF, which stands in KHR_lights_punctual or EXT_lights_area of the
+/// root, into those of the look document, where both stand in /lights. Others stay.
 void resolve_light_place(const LookDocument& document, std::vector<std::string>& tokens);
 
 /// Puts names where an entity `value` of a section has indices of the scene file; unknown indices stay.

@@ -16,7 +16,7 @@ constexpr double kHuge = kUnbounded;  // where a float's infinity does no harm
 constexpr double kRightAngle = 1.5707963267948966;
 constexpr double kBelowPi = 3.1415926;
 constexpr double kPi = 3.141592653589793;
-constexpr double kCoolest = 1000, kHottest = 40000;  // kelvin: where light_color (compile/light_shape.h) has sources
+constexpr double kCoolest = 1000, kHottest = 40000;  // kelvin: of temperature_color(), compile/place_light.h
 
 SchemaField number(std::string_view key, Json fallback, double low, double high) {
   return {.key = key, .kind = FieldKind::number, .fallback = std::move(fallback), .low = low, .high = high};

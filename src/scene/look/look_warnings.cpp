@@ -6,7 +6,7 @@
 #include <set>
 
 #include "scene/compile/compile_material.h"
-#include "scene/compile/light_shape.h"
+#include "scene/compile/place_light.h"
 #include "scene/light.h"
 #include "scene/look/look_bounds.h"
 #include "scene/look/look_schema.h"

@@ -15,8 +15,6 @@ float textured(const RayNode& node, const RayObject& object, float factor, Slot 
          texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint)[channel];
 }
 
-bool is_textured(const Material& material, Slot slot) { return material.slot(slot).kind != TextureKind::none; }
-
 /// The bucket of a roughness and its lobe.
 void set_glossy(float roughness, float floor, AlphaBucket& bucket, GlossyLobe& lobe) {
   bucket = bucket_of_alpha(alpha_of(floored(roughness, floor)));
@@ -26,14 +24,9 @@ void set_glossy(float roughness, float floor, AlphaBucket& bucket, GlossyLobe& l
 }  // namespace
 
 LobeSet lobe_set(const Material& material, const SurfaceOptics& optics, bool inside) {
-  if (material.model == IlluminationModel::unlit) return {false, false, false};
-  if (material.model == IlluminationModel::blinn_phong) return {true, false, false};
-  if (optics.volume && inside) return {false, true, false};
-  const bool is_metal = material.metallic >= 1 && !is_textured(material, Slot::metallic_roughness);
-  const bool lets_all_through = material.transmission >= 1 && !is_textured(material, Slot::transmission);
-  const bool is_cloth = material.sheen_color != Color(0, 0, 0);
-  const bool reflects = material.specular > 0 || material.metallic > 0;
-  return {(!is_metal && !lets_all_through) || is_cloth, reflects, material.clearcoat > 0 && !inside};
+  const MaterialLobes lobes = material_lobes(material);
+  if (optics.volume && inside) return {false, lobes.specular, false};
+  return {lobes.diffuse, lobes.specular, lobes.coat && !inside};
 }
 
 VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal& normal, const Normal& coat_normal) {

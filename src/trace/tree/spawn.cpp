@@ -238,21 +238,17 @@ void note_refraction(SpawnedRay* ray) {
 Spawned spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
   const SurfaceOptics& optics = object.optics;
   const bool gathers = node.ray.path.gathers;
-  // What stands behind a thin surface is gathered, too.
-  constexpr std::uint32_t kMostStraight = 16;
-  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers ? kMostStraight : 0));
+  // What stands behind what lets rays through is gathered, too.
+  constexpr std::uint32_t kMostBehind = 8;
+  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers ? kMostBehind : 0));
   const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
-  if (gathers) {
-    if (optics.refracts && !optics.bent)
-      Interface(node, object).refract(spawner, false, [](SpawnedRay*) {});
-    if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
-    return spawner.result();
-  }
+  if (gathers && !optics.refracts && !optics.transparent) return spawner.result();
   const Interface interface(node, object);
-  if (is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
+  if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
   interface.refract(spawner, false, note_refraction);
   if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
   interface.refract(spawner, true, note_refraction);
+  if (gathers) return spawner.result();
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
   if (!lobes.any()) return spawner.result();
   add_lobe_ray(spawner, node, lobes, rule, optics.refracts ? interface.factor(interface.reflectance()) : 1.0F);

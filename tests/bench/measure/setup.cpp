@@ -47,8 +47,8 @@ SceneState load_scene(const BenchOptions& options) {
   LookDocument document = import_look(options);
   const SceneChoices choices = scene_choices(options, document);
   const Camera camera = choose_camera(document, choices.camera, options.width, options.height);
-  if (choices.has_auto_lights) (void)add_auto_lights(document, camera);
-  return SceneState(std::move(document), camera, std::make_shared<PyramidStore>());
+  if (choices.has_auto_lights) (void)add_auto_lights(document, camera, options.view.integrator);
+  return SceneState(std::move(document), camera, std::make_shared<PyramidStore>(), options.view.integrator);
 }
 
 double time_of(const std::function<void()>& body) {

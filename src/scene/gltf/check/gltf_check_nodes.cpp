@@ -18,7 +18,7 @@ void check_node_extensions(const JsonView& root, const JsonView& node) {
       (void)reference(light->at("light"), lights ? array_size(*lights, "lights") : 0, "light");
     }
   if (extension(node, kLightExtensions[0]) && extension(node, kLightExtensions[1]))
-    node.at("extensions").at(kLightExtensions[1]).fail("the node has a light of KHR_lights_punctual, too: it may have one");
+    node.at("extensions").at(kLightExtensions[1]).fail("the node has a light of KHR_lights_punctual, too");
   if (const auto instancing = extension(node, "EXT_mesh_gpu_instancing")) {
     const JsonView attributes = instancing->at("attributes");
     attributes.require_object();

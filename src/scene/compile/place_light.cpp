@@ -1,4 +1,4 @@
-#include "scene/compile/light_shape.h"
+#include "scene/compile/place_light.h"
 
 #include <algorithm>
 #include <cmath>
