@@ -1,7 +1,7 @@
 // The scene of the integrator `path`: lights Lamp (a point), Spot (soft, excludes Cloth), Sun (soft), Window (a
 // rectangle), Dish (a disk that the camera sees), the emission of Glow with an image, and an environment whose image
-// has a sun; Ground and Ball are dull, MirrorBall is rough metal, GlassBall a volume, Pane thin glass, Veil blended, Coated
-// bumpy under its coat, Cloth has sheen, Phong and Sign have the other models.
+// has a sun; Ground and Ball are dull, MirrorBall is rough metal, GlassBall a volume, Pane thin glass, Veil blended,
+// Coated bumpy under its coat, Cloth has sheen, Phong and Sign have the other models.
 #include <cmath>
 
 #include "test_scenes.h"
