@@ -33,7 +33,7 @@ struct Reader {
         light.filters.push_back({words[word++], hits[hit++]});
     }
     for (std::uint32_t branch = 0; branch < kBranches; ++branch)
-      if ((node.flags >> (branch < 4 ? branch : branch + 1) & 1U) != 0)
+      if ((node.flags >> (branch < 4 ? branch : branch < 7 ? branch + 1 : 16) & 1U) != 0)
         node.children.push_back({static_cast<Branch>(branch), this->node()});
     return node;
   }

@@ -1,11 +1,12 @@
 // Every row of the paper's Table 1 (and the look-dev edits beside it) on three scenes: the replayed frame has the bits
 // of a full render of the edited scene, and the ray trees kept for the next step are those that a fresh preprocess
-// finds.
+// finds. Under `path` as well, there also with the sums of light, and on a fourth scene.
 #include <gtest/gtest.h>
 
 #include <optional>
 
 #include "matrix_rows.h"
+#include "path_checks.h"
 
 namespace relook {
 namespace {
@@ -221,11 +222,12 @@ struct MatrixCase {
   std::uint32_t samples;
   ChangeClass kind;
   std::uint32_t shadow_bits = 0;
+  Integrator integrator = Integrator::whitted;
 };
 
 void PrintTo(const MatrixCase& c, std::ostream* out) {
   *out << test_scene_name(c.scene) << ", " << change_class_name(c.kind) << ", " << c.samples << " samples, "
-       << c.shadow_bits << " shadow bits";
+       << c.shadow_bits << " shadow bits, " << integrator_word(c.integrator);
 }
 
 class EditMatrix : public testing::TestWithParam<MatrixCase> {};
@@ -233,17 +235,25 @@ class EditMatrix : public testing::TestWithParam<MatrixCase> {};
 std::string case_name(const testing::TestParamInfo<MatrixCase>& info) {
   return std::string(test_scene_name(info.param.scene)) + "_" + std::string(change_class_name(info.param.kind)) + "_" +
          std::to_string(info.param.samples) +
-         (info.param.shadow_bits == 0 ? "" : "_shadow_bits_" + std::to_string(info.param.shadow_bits));
+         (info.param.shadow_bits == 0 ? "" : "_shadow_bits_" + std::to_string(info.param.shadow_bits)) +
+         (info.param.integrator == Integrator::path ? "_path" : "");
+}
+
+std::vector<MatrixRow> rows_of(ChangeClass kind) {
+  if (kind == ChangeClass::color) return color_rows();
+  return kind == ChangeClass::optical ? optical_rows() : geometric_rows();
 }
 
 TEST_P(EditMatrix, ReplayedFrameAndTreesAreThoseOfAFullRender) {
-  const auto [which, samples, kind, shadow_bits] = GetParam();
-  const auto rows = kind == ChangeClass::color     ? color_rows()
-                    : kind == ChangeClass::optical ? optical_rows()
-                                                   : geometric_rows();
+  const auto [which, samples, kind, shadow_bits, integrator] = GetParam();
+  if (integrator == Integrator::path) {  // where buckets, suns and emission make the class of a row
+    const std::uint32_t width = samples == 1 ? 68 : 28, height = samples == 1 ? 18 : 21;
+    expect_full_renders(test_scene(which, width, height), path_view(samples), rows_of(kind), std::nullopt);
+    return;
+  }
   // In the study Picture displaces and Matte spawns coat rays.
   const bool is_of_color = kind == ChangeClass::color && which != TestScene::study;
-  expect_full_renders(test_scene(which, 64 / samples + 24, 48 / samples + 18), {samples, 6, shadow_bits}, rows,
+  expect_full_renders(test_scene(which, 64 / samples + 24, 48 / samples + 18), {samples, 6, shadow_bits}, rows_of(kind),
                       is_of_color ? std::optional(ChangeClass::color) : std::nullopt);
 }
 
@@ -263,6 +273,16 @@ std::vector<MatrixCase> all_cases() {
   return cases;
 }
 
+std::vector<MatrixCase> path_cases() {
+  std::vector<MatrixCase> cases;
+  std::uint32_t samples = 0;
+  for (const TestScene scene : {TestScene::spheres, TestScene::cards, TestScene::study, TestScene::lights})
+    for (const ChangeClass kind : {ChangeClass::color, ChangeClass::optical, ChangeClass::geometric})
+      cases.push_back({scene, 1 + samples++ % 4, kind, 0, Integrator::path});
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Path, EditMatrix, testing::ValuesIn(path_cases()), case_name);
 INSTANTIATE_TEST_SUITE_P(Table1, EditMatrix, testing::ValuesIn(all_cases()), case_name);
 
 }  // namespace

@@ -30,7 +30,7 @@ template <class... Operations>
 }
 
 /// Steps through rows. `is_of_class`: what the class of a row must be, if anything. Frames, ray trees, tiles and
-/// counters that are not those of a full render are gtest failures.
+/// counters that are not those of a full render are gtest failures; under `path` sums of light, too, but no tiles.
 void expect_full_renders(SceneState state, const ViewOptions& view, const std::vector<MatrixRow>& rows,
                          std::optional<ChangeClass> is_of_class, const RegionOptions& regions = {});
 /// The frame has the bits of a full render, and the ray trees are those of a fresh preprocess.

@@ -205,10 +205,17 @@ void SceneBuilder::adopt(int parent, int child) {
 }
 
 void SceneBuilder::light(const std::string& name, Json light, Json placement) {
-  Json& lights = gltf_.gltf["extensions"]["KHR_lights_punctual"]["lights"];
+  add_light("KHR_lights_punctual", name, std::move(light), std::move(placement));
+}
+void SceneBuilder::area_light(const std::string& name, Json light, Json placement) {
+  add_light("EXT_lights_area", name, std::move(light), std::move(placement));
+}
+
+void SceneBuilder::add_light(const char* extension, const std::string& name, Json light, Json placement) {
+  Json& lights = gltf_.gltf["extensions"][extension]["lights"];
   light["name"] = name;
   lights.push_back(std::move(light));
-  placement["extensions"]["KHR_lights_punctual"]["light"] = last_index(lights);
+  placement["extensions"][extension]["light"] = last_index(lights);
   node(name, std::move(placement));
 }
 
@@ -274,7 +281,11 @@ SceneState scene_of_file(const std::filesystem::path& file, std::uint32_t width,
 }
 
 SceneState with_camera(const SceneState& state, const Camera& camera) {
-  return SceneState(state.document(), camera, state.pyramids());
+  return SceneState(state.document(), camera, state.pyramids(), state.scene().integrator);
+}
+
+SceneState with_integrator(const SceneState& state, Integrator integrator) {
+  return SceneState(state.document(), state.scene().camera, state.pyramids(), integrator);
 }
 
 SceneState compiled_again(const SceneState& state) { return with_camera(state, state.scene().camera); }
@@ -302,11 +313,12 @@ std::vector<std::uint32_t> different_pixels(const Frame& a, const Frame& b) {
 SceneState test_scene(TestScene scene, std::uint32_t width, std::uint32_t height) {
   if (scene == TestScene::spheres) return spheres_scene(width, height);
   if (scene == TestScene::cards) return cards_scene(width, height);
+  if (scene == TestScene::lights) return lights_scene(width, height);
   return study_scene(width, height);
 }
 
 const char* test_scene_name(TestScene scene) {
-  static constexpr const char* kNames[] = {"spheres", "cards", "study"};
+  static constexpr const char* kNames[] = {"spheres", "cards", "study", "lights"};
   return kNames[static_cast<std::size_t>(scene)];
 }
 

@@ -41,6 +41,8 @@ class SceneBuilder {
   int node(const std::string& name, Json value);
   /// A light and the root node that places it, of the same name.
   void light(const std::string& name, Json light, Json placement);
+  /// The same of EXT_lights_area.
+  void area_light(const std::string& name, Json light, Json placement);
   void ambient(Color color);
   void environment(const Json& value);
   /// A skin of these nodes; `inverse_binds`: a matrix a joint.
@@ -54,6 +56,8 @@ class SceneBuilder {
   [[nodiscard]] const Camera& camera() const { return camera_; }
 
  private:
+  void add_light(const char* extension, const std::string& name, Json light, Json placement);
+
   ImportedGltf gltf_;
   std::shared_ptr<PyramidStore> pyramids_;
   Camera camera_;
@@ -71,7 +75,11 @@ class SceneBuilder {
 /// that are morphed (MirrorBall, GlassBall), and a morphed and displaced Post.
 [[nodiscard]] SceneState puppet_scene(std::uint32_t width, std::uint32_t height);
 
-enum class TestScene { spheres, cards, study };
+/// (e) of the integrator `path`, not of the matrix: every kind of light, softened, linked and seen, a background of its
+/// own, and beside the roles every kind of surface: see lights_scene.cpp. Its state is compiled for `path`.
+[[nodiscard]] SceneState lights_scene(std::uint32_t width, std::uint32_t height);
+
+enum class TestScene { spheres, cards, study, lights };
 [[nodiscard]] SceneState test_scene(TestScene scene, std::uint32_t width, std::uint32_t height);
 [[nodiscard]] const char* test_scene_name(TestScene scene);
 
@@ -83,9 +91,10 @@ enum class TestScene { spheres, cards, study };
 
 /// A glTF file, seen by its own camera.
 [[nodiscard]] SceneState scene_of_file(const std::filesystem::path& file, std::uint32_t width, std::uint32_t height);
-/// The same scene through another camera.
+/// The same scene through another camera, or for another integrator.
 [[nodiscard]] SceneState with_camera(const SceneState& state, const Camera& camera);
-/// Compiled from scratch out of the look document as it is now.
+[[nodiscard]] SceneState with_integrator(const SceneState& state, Integrator integrator);
+/// Compiled from scratch out of the look document as it is now, for the same integrator.
 [[nodiscard]] SceneState compiled_again(const SceneState& state);
 [[nodiscard]] Frame rendered(const Scene& scene, ViewOptions view);
 [[nodiscard]] Image preprocessed(const Scene& scene, ViewOptions view);
