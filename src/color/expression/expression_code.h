@@ -56,8 +56,12 @@ enum class Input : std::uint8_t {
   child,         // by axis: channel; which: branch
   child_length,  // which: branch
   tint,          // by axis: channel; which: index in the light order
-  reached,       // does that light reach the node, 1 or 0; which: index in the light order
+  sum,           // by axis: channel; which: number of a sum of lamps' light (LightSum in program.h)
 };
+
+/// In the expression of what any one lamp adds: that lamp, and its place in the light order.
+inline constexpr LightId kLightAtHand{(1U << 24) - 1U};
+inline constexpr std::uint32_t kPlaceAtHand = (1U << 20) - 1U;
 
 /// What an instruction has beside its operands. Op says which of these it is.
 class Payload {
