@@ -18,7 +18,6 @@ struct BoundProgram;
 struct SumMemory {
   std::vector<float> columns;  // of nodes, one after the other
   std::vector<float> sums;     // R, G, B of each sum
-  std::vector<float> stored;   // columns of the nodes that a lamp reaches
   std::vector<std::uint32_t> first_lights;         // [nodes] RayNode::first_light
   std::vector<std::vector<std::uint32_t>> reached; // [2 * lamps] lanes that a lamp reaches, unfiltered and filtered
 };

@@ -22,7 +22,7 @@ inline constexpr std::size_t kLightTerms = 2 * kLightKinds;
 /// of it is Input::sum, behind all these expressions in the code.
 struct LightSum {
   using Rgb = std::array<Value, 3>;
-  Rgb before{};                                       // the sum without any lamp
+  Rgb before{};  // the sum without any lamp
   std::array<std::optional<Rgb>, kLightTerms> terms;  // what a lamp adds, for the kinds of lights that the scene has
 };
 
@@ -31,10 +31,10 @@ struct LightSum {
 
 /// The kernels of a program with sums.
 struct Pieces {
-  std::vector<Value> columns;                           // of a node: what no lamp changes
-  Kernel constants;                                     // outputs: the columns
-  std::vector<Kernel> stages;                           // by sum: R, G, B before it; the last: R, G, B, A; read columns and sums
-  std::vector<std::array<Kernel, kLightTerms>> terms;   // by sum: R, G, B; read columns and the lamp at hand
+  std::vector<Value> columns;  // of a node: what no lamp changes
+  Kernel constants;            // outputs: the columns
+  std::vector<Kernel> stages;  // read columns and sums; by sum: R, G, B before it; the last: R, G, B, A
+  std::vector<std::array<Kernel, kLightTerms>> terms;  // by sum: R, G, B; read columns and the lamp at hand
 };
 [[nodiscard]] Pieces make_pieces(const Code& code, std::span<const LightSum> sums, const std::array<Value, 4>& result);
 
