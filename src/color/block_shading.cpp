@@ -11,7 +11,7 @@ void BlockShading::shade_filters(const TreeBlock& block, NodePrograms& programs)
   for (const FilterNode& filter : block.filters) batch_of_.push_back(programs.number(block, filter));
   batches_.for_each(batch_of_, programs.size(), [&](std::size_t batch, std::span<const std::uint32_t> indices) {
     const BoundProgram& program = programs.program(static_cast<std::uint32_t>(batch));
-    evaluate(program, scene_, block, true, indices, memory_.colors, memory_.scratch);
+    evaluate(program, scene_, block, true, indices, memory_);
   });
 }
 
@@ -29,7 +29,7 @@ void BlockShading::shade_nodes(const TreeBlock& block, NodePrograms& programs) {
   batches_.for_each(batch_of_, std::size_t{generations} * count,
                     [&](std::size_t batch, std::span<const std::uint32_t> indices) {
                       const BoundProgram& program = programs.program(static_cast<std::uint32_t>(batch % count));
-                      evaluate(program, scene_, block, false, indices, memory_.colors, memory_.scratch);
+                      evaluate(program, scene_, block, false, indices, memory_);
                     });
 }
 
@@ -40,7 +40,7 @@ void BlockShading::shade_nodes(const TreeBlock& block, NodePrograms& programs, s
     chosen_.clear();
     for (const std::uint32_t place : places) chosen_.push_back(nodes[place]);
     const BoundProgram& program = programs.program(static_cast<std::uint32_t>(batch));
-    evaluate(program, scene_, block, false, chosen_, memory_.colors, memory_.scratch);
+    evaluate(program, scene_, block, false, chosen_, memory_);
   });
 }
 

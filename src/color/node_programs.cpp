@@ -22,7 +22,7 @@ NodeKey surface_key(const ColorScene& scene, ObjectId id, bool inside) {
 
 /// Adds a light to a key if it reaches the node. `order`: its place in the light order.
 void note_light(NodeKey& key, LightId light, std::uint32_t order, ShadowState state) {
-  if (state == ShadowState::open || state == ShadowState::filtered)
+  if (reaches(state))
     key.lights.push_back({light, order, state == ShadowState::filtered});
 }
 
@@ -52,7 +52,7 @@ std::uint32_t NodePrograms::number(const TreeBlock& block, const RayNode& node) 
   if (part_.all_lamps)
     return number(signature_of(block, node, 0), [&] {
       NodeKey key = key_of(scene_, block, node);
-      if (key.kind == NodeKind::surface) key.lights = asked_lights(order);
+      key.sums = key.kind == NodeKind::surface;
       return restricted(std::move(key), part_);
     });
   Signature signature = signature_of(block, node, 0);
@@ -67,6 +67,11 @@ std::size_t NodePrograms::place_of_lamp() const {
 }
 
 BoundProgram ProgramTable::get(const Scene& scene, const NodeKey& key) {
+  if (key.sums && !key.lights.empty()) {
+    NodeKey any = key;
+    any.lights.clear();
+    return get(scene, any);
+  }
   {
     const std::shared_lock lock(mutex_);
     const auto it = bound_.find(key);
@@ -114,7 +119,7 @@ void append_keys(const ColorScene& scene, std::span<const std::uint32_t> path, s
         keys.back().inside = true;
       }
     }
-    if (lights.size() > kMostTellingLights) key.lights = asked_lights(lights);
+    key.sums = lights.size() > kMostTellingLights;
     keys.push_back(std::move(key));
   }
 }

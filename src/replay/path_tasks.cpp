@@ -74,8 +74,12 @@ class Finder {
   [[nodiscard]] bool reaches(std::span<const std::uint32_t> path, const ParameterSet& parameters) {
     std::vector<NodeKey> keys;
     append_keys(s_.rays, path, s_.lights, s_.shadow_bits, keys);
-    return std::ranges::any_of(
-        keys, [&](const NodeKey& key) { return parameters.reaches(programs_.get(s_.rays.scene(), key)); });
+    return std::ranges::any_of(keys, [&](const NodeKey& key) {
+      const BoundProgram bound = programs_.get(s_.rays.scene(), key);
+      return parameters.reaches(bound) ||
+             (bound.program->dependencies.lamps &&
+              std::ranges::any_of(key.lights, [&](const VisibleLight& lamp) { return parameters.has(lamp.light); }));
+    });
   }
 
   const PathSearch& s_;

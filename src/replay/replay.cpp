@@ -51,10 +51,7 @@ struct Replayer::Impl {
     return change;
   }
 
-  /// With more lights, what a sample would keep of them takes more room than its tree.
-  [[nodiscard]] bool may_compress() const {
-    return parts.color_trees.most_samples() > 0 && parts.state.scene().light_order.size() <= kMostTellingLights;
-  }
+  [[nodiscard]] bool may_compress() const { return parts.color_trees.most_samples() > 0; }
 
   /// The parameters whose colour trees an edit of colours is to use; null: none.
   [[nodiscard]] const ParameterSet* set_to_keep(const ColorChange& colors) const {

@@ -1,5 +1,5 @@
-// Words of light states hold 16 lights, sets of lights in tunnels 32, those in compressed colour trees 64
-// (trace/tree/light_set.h): scenes with a light more, and edits of the lights on both sides of each border. After every
+// Programs tell 6 lights apart (color/surface/node_key.h), words of light states hold 16, sets of lights in tunnels 32,
+// those in compressed colour trees 64 (trace/tree/light_set.h): scenes with a light more, and edits of the lights on both sides of each border. After every
 // step the replayed frame has the bits of a full render.
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ void add_rows_of_light(int i, int lights, std::vector<MatrixRow>& rows) {
 
 std::vector<MatrixRow> rows_of_lights(int lights) {
   std::vector<MatrixRow> rows;
-  for (const int border : {15, 16, 31, 32, 63, 64})
+  for (const int border : {5, 6, 15, 16, 31, 32, 63, 64})
     if (border < lights) add_rows_of_light(border, lights, rows);
   const std::string last = light_name(lights - 1);
   rows.push_back(row("one more", add("/nodes/M", placed_light(last, {0.3, 3, 1}))));
@@ -98,7 +98,7 @@ TEST_P(LightBorders, StepsAroundTheBordersOfWordsGiveFullRenders) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Words, LightBorders,
-                         testing::Values(LightsCase{32, 0}, LightsCase{33, 0}, LightsCase{33, 2}, LightsCase{64, 0},
+                         testing::Values(LightsCase{6, 0}, LightsCase{7, 0}, LightsCase{7, 2}, LightsCase{32, 0}, LightsCase{33, 0}, LightsCase{33, 2}, LightsCase{64, 0},
                                          LightsCase{64, 2}, LightsCase{65, 0}, LightsCase{65, 2}),
                          lights_name);
 

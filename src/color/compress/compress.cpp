@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "color/compress/compress_sums.h"
 #include "color/node_programs.h"
 
 namespace relook {
@@ -35,6 +36,15 @@ class Compressor {
     for (const RayNode& node : block_.nodes) node_program_.push_back(c_.programs.number(block_, node));
     for (std::size_t i = 0; i < c_.programs.size(); ++i)
       reached_.push_back(parameters_.reaches(c_.programs.program(static_cast<std::uint32_t>(i))));
+    const std::vector<LightId>& order = c_.scene.light_order();
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+      if (parameters_.has(order[place])) changing_lamps_.push_back(place);
+  }
+  /// Does a node that adds whichever lamps reach it add one that changes?
+  [[nodiscard]] bool adds_changing(std::size_t n) const {
+    if (changing_lamps_.empty() || !c_.programs.program(node_program_[n]).program->dependencies.lamps) return false;
+    const LightLink* links = block_.lights.data() + block_.nodes[n].first_light;
+    return std::ranges::any_of(changing_lamps_, [&](std::uint32_t place) { return reaches(links[place].state); });
   }
 
   /// Nodes stand in preorder: children come after their parents.
@@ -44,7 +54,8 @@ class Compressor {
     below_.resize(block_.nodes.size());
     for (std::size_t n = block_.nodes.size(); n-- > 0;) {
       below_[n] = changing_below(block_.nodes[n]);
-      node_changes_[n] = reached_[node_program_[n]] || !below_[n].children.empty() || !below_[n].tints.empty();
+      node_changes_[n] = reached_[node_program_[n]] || adds_changing(n) || !below_[n].children.empty() ||
+                         !below_[n].tints.empty();
     }
   }
   [[nodiscard]] ChangingBelow changing_below(const RayNode& node) const {
@@ -135,8 +146,9 @@ class Compressor {
   void evaluate_batches(bool are_filters, const std::map<std::uint32_t, std::vector<std::uint32_t>>& batches) {
     for (const auto& [number, indices] : batches) {
       const BoundProgram& bound = c_.programs.program(number);
-      evaluate(bound, c_.scene, block_, are_filters, indices, c_.memory.colors, c_.memory.scratch);
-      result_.baked.add(bound.material, bound.program->dependencies);
+      evaluate(bound, c_.scene, block_, are_filters, indices, c_.memory);
+      const Dependencies& read = bound.program->dependencies;
+      result_.baked.add(bound.material, read.lamps ? with_lamps(read, c_.scene, block_, indices) : read);
     }
   }
 
@@ -147,7 +159,7 @@ class Compressor {
       CompressedBatch batch = new_batch(number, {});
       batch.are_filters = true;
       for (const std::uint32_t f : indices) batch.out.push_back(filter_slot_[f]);
-      keep(std::move(batch), true, indices);
+      keep(std::move(batch), number, true, indices);
     }
   }
 
@@ -168,7 +180,9 @@ class Compressor {
     BatchKey last_key;
     for (std::uint32_t n = 0; n < block_.nodes.size(); ++n) {
       if (!node_changes_[n]) continue;
-      const BatchKey key{block_.nodes[n].ray.generation, node_program_[n], below_[n].children, below_[n].tints};
+      WideLightSet tints = below_[n].tints;
+      if (has_sums(node_program_[n]) && !tints.empty()) tints = WideLightSet::all();  // told apart lamp by lamp
+      const BatchKey key{block_.nodes[n].ray.generation, node_program_[n], below_[n].children, tints};
       if (last == nullptr || key != last_key) last = &batches[key];
       last_key = key;
       last->push_back(n);
@@ -177,8 +191,8 @@ class Compressor {
       CompressedBatch batch = new_batch(key.program, {key.tints, key.children});
       for (const std::uint32_t n : indices) batch.out.push_back(node_slot_[n]);
       note_children(batch, key.children, indices);
-      if (!key.tints.empty()) note_tints(batch, key.tints, indices);
-      keep(std::move(batch), false, indices);
+      if (!key.tints.empty() && !has_sums(key.program)) note_tints(batch, key.tints, indices);
+      keep(std::move(batch), key.program, false, indices);
     }
   }
   void note_children(CompressedBatch& batch, BranchSet children, const std::vector<std::uint32_t>& indices) const {
@@ -208,6 +222,7 @@ class Compressor {
     leaves.fields = parameters_.fields_of(bound.material) & read.material;
     for (const LightId light : read.lights)
       if (parameters_.has(light)) leaves.lights.push_back(light);
+    leaves.lamps = read.lamps && !parameters_.lights.empty();
     leaves.ambient = parameters_.ambient && read.ambient;
     leaves.environment = parameters_.environment && read.environment;
     leaves.children = below.children;
@@ -217,10 +232,20 @@ class Compressor {
     batch.material = bound.material;
     return batch;
   }
-  void keep(CompressedBatch batch, bool are_filters, const std::vector<std::uint32_t>& indices) {
-    store_columns(batch, c_.scene.scene(), {c_.scene, block_, c_.memory.colors, are_filters, indices},
-                  c_.memory.scratch);
-    result_.baked.add(batch.material, batch.program->baked);
+  [[nodiscard]] bool has_sums(std::uint32_t program) const {
+    return !c_.programs.program(program).program->sums.empty();
+  }
+  void keep(CompressedBatch batch, std::uint32_t number, bool are_filters, const std::vector<std::uint32_t>& indices) {
+    const NodeBatch nodes{c_.scene, block_, c_.memory.colors, are_filters, indices};
+    if (has_sums(number)) {
+      compress_sums(batch, c_.programs.program(number), nodes, {parameters_, filter_changes_, filter_slot_}, c_.memory,
+                    result_.baked);
+    } else {
+      const Parameters parameters{c_.scene.scene(), batch.material};
+      batch.columns =
+          stored_columns(batch.program->constants, parameters, nodes, batch.lanes(), c_.memory.scratch);
+      result_.baked.add(batch.material, batch.program->baked);
+    }
     result_.batches.push_back(std::move(batch));
   }
 
@@ -230,6 +255,7 @@ class Compressor {
   const CompressContext& c_;
   std::vector<std::uint32_t> node_program_, filter_program_;
   std::vector<bool> reached_;  // by program number
+  std::vector<std::uint32_t> changing_lamps_;  // places in the light order
   std::vector<bool> node_changes_, filter_changes_;
   std::vector<ChangingBelow> below_;
   std::vector<std::uint32_t> node_slot_, filter_slot_;

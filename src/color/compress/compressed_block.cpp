@@ -1,7 +1,6 @@
 #include "color/compress/compressed_block.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace relook {
 namespace {
@@ -9,29 +8,19 @@ namespace {
 /// The lanes of a compressed batch, as a residual kernel loads them.
 class CompressedLanes {
  public:
-  CompressedLanes(const CompressedBatch& batch, const BlockColors& colors) : batch_(batch), colors_(colors) {}
+  CompressedLanes(const CompressedBatch& batch, const BlockColors& colors, const SumColumns& sums)
+      : batch_(batch), colors_(colors), sums_(sums) {}
 
   void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&, Scratch& scratch) const {
-    if (step.op == Op::column) {
-      const CompressedBatch::Stored& stored = batch_.columns[step.payload.number()];
-      if (stored.first == CompressedBatch::kShared)
-        std::fill_n(scratch.own(step.out), whole_vectors(lanes), stored.shared);
-      else
-        scratch.at[step.out] = column_at(stored, first);
-      return;
-    }
-    load_color(step, first, lanes, scratch);
+    if (step.op == Op::column)
+      batch_.columns.load(step.payload.number(), step.out, first, lanes, scratch);
+    else if (step.payload.input() == Input::sum)
+      scratch.at[step.out] = sums_.at(step.payload) + first;
+    else
+      load_color(step, first, lanes, scratch);
   }
 
  private:
-  /// The values of a column from lane `first` on. Asks for those of the next block already: there are more columns than
-  /// a processor's prefetcher follows.
-  [[nodiscard]] const float* column_at(const CompressedBatch::Stored& stored, std::size_t first) const {
-    constexpr std::size_t kVectors = kLanes / kVectorLanes;
-    const CompressedBatch::Vector* column = batch_.values.data() + stored.first + first / kVectorLanes;
-    for (std::size_t k = kVectors; k < 2 * kVectors; ++k) __builtin_prefetch(column + k);
-    return column->lanes.data();
-  }
   void load_color(const Kernel::Step& step, std::size_t first, std::size_t lanes, Scratch& scratch) const {
     const int channel = static_cast<int>(step.payload.axis());
     const std::uint32_t which = step.payload.which();
@@ -48,38 +37,71 @@ class CompressedLanes {
 
   const CompressedBatch& batch_;
   const BlockColors& colors_;
+  const SumColumns& sums_;
 };
 
-bool is_one_value(const float* values, std::size_t lanes) {
-  for (std::size_t lane = 1; lane < lanes; ++lane)
-    if (std::memcmp(&values[lane], &values[0], sizeof(float)) != 0) return false;
-  return true;
+/// Those that a lamp reaches.
+struct LitSource {
+  const CompressedBatch& batch;
+  const LitLanes& lit;
+  const BlockColors& colors;
+
+  void load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters&, Scratch& scratch) const {
+    const std::size_t of_nodes = batch.columns.size(), column = step.payload.number();
+    if (step.op == Op::column && column >= of_nodes)
+      return lit.columns.load(column - of_nodes, step.out, first, lanes, scratch);
+    float* out = scratch.own(step.out);
+    if (step.op == Op::column) {
+      const float* values = batch.columns.values(column);
+      if (values == nullptr) {
+        std::fill_n(out, whole_vectors(lanes), batch.columns.shared(column));
+        return;
+      }
+      for (std::size_t k = 0; k < lanes; ++k) out[k] = values[lit.lanes[first + k]];
+      return;
+    }
+    const int channel = static_cast<int>(step.payload.axis());
+    for (std::size_t k = 0; k < lanes; ++k) out[k] = tint(lit.links[first + k], channel, colors);
+  }
+};
+
+/// Calls take(first, lanes, run) for the lanes of a source, a few at a time.
+template <class Source, class Take>
+void run_lanes(const Kernel& kernel, const Parameters& parameters, const Source& source, std::size_t count,
+               Scratch& scratch, const Take& take) {
+  KernelRun run(kernel, parameters, source, count, scratch);
+  for (std::size_t first = 0; first < count; first += kLanes) {
+    const std::size_t lanes = std::min(kLanes, count - first);
+    run.run(first, lanes);
+    take(first, lanes, run);
+  }
 }
 
-/// Drops columns that hold one value, or the values of an earlier column, and notes where their values are.
-void drop_repeated(CompressedBatch& batch) {
-  using Vector = CompressedBatch::Vector;
-  const std::size_t lanes = batch.lanes(), length = whole_vectors(lanes) / kVectorLanes;
-  const auto equal = [&](const Vector* a, const Vector* b) { return std::memcmp(a, b, lanes * sizeof(float)) == 0; };
-  std::vector<Vector> kept;
-  std::vector<std::uint32_t> firsts;  // of the kept columns
-  for (std::size_t k = 0; k < batch.columns.size(); ++k) {
-    const Vector* column = &batch.values[k * length];
-    if (is_one_value(column->lanes.data(), lanes)) {
-      batch.columns[k] = {CompressedBatch::kShared, column->lanes[0]};
-      continue;
+/// The sums of a batch, as far as they change.
+void evaluate_sums(const CompressedBatch& batch, const Scene& scene, SumColumns& sums, ColorMemory& memory) {
+  for (std::size_t sum = 0; sum < batch.sums.size(); ++sum) {
+    const SplitSum& split = batch.program->sums[sum];
+    if (!split.changes) continue;
+    const CompressedSum& kept = batch.sums[sum];
+    if (kept.start.size() != 0) {
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        if (const float* values = kept.start.values(channel); values != nullptr)
+          std::copy_n(values, batch.lanes(), sums.at(sum, channel));
+        else
+          std::fill_n(sums.at(sum, channel), batch.lanes(), kept.start.shared(channel));
+    } else {
+      run_lanes(split.stage, {scene, batch.material}, CompressedLanes(batch, memory.colors, sums), batch.lanes(),
+                memory.scratch, [&](std::size_t first, std::size_t lanes, const auto& run) {
+                  for (std::size_t channel = 0; channel < 3; ++channel)
+                    std::copy_n(run.output(channel), lanes, sums.at(sum, channel) + first);
+                });
     }
-    const auto same = std::ranges::find_if(firsts, [&](std::uint32_t first) { return equal(&kept[first], column); });
-    if (same != firsts.end()) {
-      batch.columns[k].first = *same;
-      continue;
-    }
-    batch.columns[k].first = static_cast<std::uint32_t>(kept.size());
-    firsts.push_back(batch.columns[k].first);
-    kept.insert(kept.end(), column, column + length);
+    for (const LitLanes& lit : kept.lit)
+      run_lanes(lit.term->residual, {scene, batch.material, lit.light}, LitSource{batch, lit, memory.colors},
+                lit.lanes.size(), memory.scratch, [&](std::size_t first, std::size_t lanes, const auto& run) {
+                  sums.add(sum, std::span(lit.lanes).subspan(first, lanes), run);
+                });
   }
-  kept.shrink_to_fit();
-  batch.values = std::move(kept);
 }
 
 }  // namespace
@@ -92,28 +114,11 @@ const SplitProgram& SplitTable::get(const ColorProgram& program, const ChangingL
 }
 
 std::size_t CompressedBatch::bytes() const {
-  std::size_t sum = sizeof(*this) + values.size() * sizeof(Vector) + out.size() * sizeof(std::uint32_t) +
-                    columns.size() * sizeof(Stored);
+  std::size_t sum = sizeof(*this) + columns.bytes() + out.size() * sizeof(std::uint32_t);
   for (const auto& slots : child) sum += slots.size() * sizeof(std::uint32_t);
   for (const auto& [light, links] : tints) sum += links.size() * sizeof(LightLink);
+  for (const CompressedSum& lamps : sums) sum += lamps.bytes();
   return sum;
-}
-
-void store_columns(CompressedBatch& batch, const Scene& scene, const NodeBatch& nodes, Scratch& scratch) {
-  const std::size_t count = batch.program->constants.outputs.size(), lanes = batch.lanes();
-  const std::size_t length = whole_vectors(lanes) / kVectorLanes;
-  batch.columns.resize(count);
-  if (count == 0) return;
-  batch.values.resize(count * length);
-  const Parameters parameters{scene, batch.material};
-  KernelRun run(batch.program->constants, parameters, nodes, lanes, scratch);
-  for (std::size_t first = 0; first < lanes; first += kLanes) {
-    const std::size_t some = std::min(kLanes, lanes - first);
-    run.run(first, some);
-    for (std::size_t k = 0; k < count; ++k)
-      std::copy_n(run.output(k), some, batch.values[k * length + first / kVectorLanes].lanes.data());
-  }
-  drop_repeated(batch);
 }
 
 void Baked::add(MaterialId material, const Dependencies& read) {
@@ -155,18 +160,16 @@ std::span<const Rgba> CompressedBlock::evaluate(const Scene& scene, ColorMemory&
   colors.filters.resize(filters);
   for (const auto& [slot, color] : known_filters) colors.filters[slot] = color;
   for (const CompressedBatch& batch : batches) {
-    const Parameters parameters{scene, batch.material};
-    const CompressedLanes source(batch, colors);
-    KernelRun run(batch.program->residual, parameters, source, batch.lanes(), memory.scratch);
+    SumColumns sums(memory.sums.sums, batch.sums.size(), batch.lanes());
+    evaluate_sums(batch, scene, sums, memory);
     std::vector<Rgba>& out = batch.are_filters ? colors.filters : colors.nodes;
-    for (std::size_t first = 0; first < batch.lanes(); first += kLanes) {
-      const std::size_t lanes = std::min(kLanes, batch.lanes() - first);
-      run.run(first, lanes);
-      const float *red = run.output(0), *green = run.output(1), *blue = run.output(2), *alpha = run.output(3);
-      const std::uint32_t* slots = batch.out.data() + first;
-      for (std::size_t lane = 0; lane < lanes; ++lane)
-        out[slots[lane]] = Rgba(red[lane], green[lane], blue[lane], alpha[lane]);
-    }
+    run_lanes(batch.program->residual, {scene, batch.material}, CompressedLanes(batch, colors, sums), batch.lanes(),
+              memory.scratch, [&](std::size_t first, std::size_t lanes, const auto& run) {
+                const float *red = run.output(0), *green = run.output(1), *blue = run.output(2), *alpha = run.output(3);
+                const std::uint32_t* slots = batch.out.data() + first;
+                for (std::size_t lane = 0; lane < lanes; ++lane)
+                  out[slots[lane]] = Rgba(red[lane], green[lane], blue[lane], alpha[lane]);
+              });
   }
   return std::span(colors.nodes).first(roots.size());
 }

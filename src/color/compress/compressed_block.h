@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "base/math.h"
-#include "color/compress/split.h"
+#include "color/compress/compressed_sum.h"
 #include "color/expression/parameter_set.h"
 #include "trace/tree/tree_block.h"
 
@@ -31,16 +31,6 @@ class SplitTable {
 
 /// Nodes (or filters) that share a residual program and what its parameters point to.
 struct CompressedBatch {
-  /// Where the values of a column are, or the one value that all its lanes share.
-  struct Stored {
-    std::uint32_t first = kShared;  // index of its first vector in `values`
-    float shared = 0;
-  };
-  static constexpr std::uint32_t kShared = 0xFFFFFFFFU;
-  struct alignas(64) Vector {
-    std::array<float, kVectorLanes> lanes;
-  };
-
   const SplitProgram* program = nullptr;
   MaterialId material;
   bool are_filters = false;
@@ -48,8 +38,8 @@ struct CompressedBatch {
   std::array<std::vector<std::uint32_t>, kBranches> child;  // [lanes] slots of changing children
   std::vector<std::pair<std::uint32_t, std::vector<LightLink>>>
       tints;  // by increasing place of a changing light in the light order: [lanes] slots of its filters
-  std::vector<Stored> columns;
-  std::vector<Vector> values;  // one column after the other, rounded up to whole vectors
+  StoredColumns columns;
+  std::vector<CompressedSum> sums;  // of a program with sums: what lamps add
 
   [[nodiscard]] std::size_t lanes() const { return out.size(); }
   [[nodiscard]] std::size_t bytes() const;
@@ -81,8 +71,5 @@ struct CompressedBlock {
   /// [roots]: their colours, which stay in memory.colors.nodes.
   [[nodiscard]] std::span<const Rgba> evaluate(const Scene& scene, ColorMemory& memory) const;
 };
-
-/// Evaluates the constant part of a batch's program and stores its outputs as columns. `nodes`: those of the batch.
-void store_columns(CompressedBatch& batch, const Scene& scene, const NodeBatch& nodes, Scratch& scratch);
 
 }  // namespace relook

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "color/expression/columns.h"
+
 namespace relook {
 namespace {
 
-/// Cheaper to compute again from columns at hand than to load.
-bool is_cheap(Op op) {
-  return op == Op::add || op == Op::subtract || op == Op::multiply || op == Op::min || op == Op::max;
-}
+/// Of the lamp at hand: its colour, and that of filters before it.
+struct LampChanges {
+  bool lamp = false, tint = false;
+};
 
 class Splitter {
  public:
@@ -18,27 +20,67 @@ class Splitter {
       if (light.index() >= changing_lights_.size()) changing_lights_.resize(light.index() + std::size_t{1});
       changing_lights_[light.index()] = true;
     }
-    changing_.resize(code_.size());
-    for (Value v = 0; v < code_.size(); ++v) changing_[v] = is_changing(v);
   }
 
   SplitProgram result() {
-    is_column_.assign(code_.size(), false);
-    visited_.assign(code_.size(), false);
-    for (Value value : program_.result) demand(value);
-    lower_columns();
-    std::vector<Value> columns;
-    for (Value v = 0; v < code_.size(); ++v)
-      if (is_column_[v]) columns.push_back(v);
-    SplitProgram split;
-    split.constants = make_kernel(code_, columns);
-    split.baked = read_by(columns);
-    split.residual = residual(columns);
-    return split;
+    find_changing();
+    for (std::size_t sum = 0; sum < program_.sums.size(); ++sum) split_sum(sum);
+    const std::vector<bool>& changing = changing_[variant(any_)];
+    add_columns(find_columns(code_, uniform_, changing, program_.result));
+    for (const SplitSum& sum : split_.sums)
+      if (sum.changes_at_first) add_columns(find_columns(code_, uniform_, changing, before(sum)));
+    std::ranges::sort(columns_);
+    columns_.erase(std::ranges::unique(columns_).begin(), columns_.end());
+
+    const Code rest = with_columns(code_, columns_);
+    split_.constants = make_kernel(code_, columns_);
+    split_.baked = read_by(columns_);
+    split_.residual = make_kernel(rest, {program_.result.begin(), program_.result.end()});
+    for (SplitSum& sum : split_.sums)
+      if (sum.changes_at_first) sum.stage = make_kernel(rest, {before(sum).begin(), before(sum).end()});
+    for (const OpenTerm& term : open_terms_) finish_term(term, rest);
+    return std::move(split_);
   }
 
  private:
-  [[nodiscard]] bool is_changing(Value v) const {
+  static constexpr std::size_t variant(const LampChanges& changes) {
+    return (changes.lamp ? 2U : 0U) + (changes.tint ? 1U : 0U);
+  }
+  [[nodiscard]] bool may_be(const LampChanges& changes) const {
+    return (any_.lamp || !changes.lamp) && (any_.tint || !changes.tint);
+  }
+  [[nodiscard]] const LightSum::Rgb& before(const SplitSum& sum) const {
+    return program_.sums[static_cast<std::size_t>(&sum - split_.sums.data())].before;
+  }
+
+  /// Which values change, for each of what may change of a lamp at hand. A sum changes if any lamp may change it.
+  void find_changing() {
+    any_ = {leaves_.lamps, !leaves_.tints.empty()};
+    split_.sums.resize(program_.sums.size());
+    for (std::vector<bool>& flags : changing_) flags.resize(code_.size());
+    for (Value v = 0; v < code_.size(); ++v) {
+      if (code_[v].op == Op::input && code_[v].payload.input() == Input::sum) note_sum(code_[v].payload.which());
+      for (const bool lamp : {false, true})
+        for (const bool tint : {false, true}) {
+          if (!may_be({lamp, tint})) continue;
+          std::vector<bool>& flags = changing_[variant({lamp, tint})];
+          flags[v] = is_changing(v, {lamp, tint}, flags);
+        }
+    }
+  }
+  void note_sum(std::size_t number) {
+    const LightSum& sum = program_.sums[number];
+    SplitSum& split = split_.sums[number];
+    split.changes_at_first = changes(sum.before, any_);
+    split.changes = split.changes_at_first || std::ranges::any_of(sum.terms, [&](const auto& term) {
+                      return term && changes(*term, any_);
+                    });
+  }
+  [[nodiscard]] bool changes(std::span<const Value> values, const LampChanges& which) const {
+    return std::ranges::any_of(values, [&](Value value) { return changing_[variant(which)][value]; });
+  }
+
+  [[nodiscard]] bool is_changing(Value v, const LampChanges& of_lamp, const std::vector<bool>& changing) const {
     const Instruction& i = code_[v];
     const auto slot = i.payload.slot();
     switch (i.op) {
@@ -47,7 +89,9 @@ class Splitter {
       case Op::slot_color:
         return (leaves_.fields & color_mask_of(slot)) != 0;
       case Op::light_field:
-        return is_color(i.payload.light_field()) && i.payload.light().index() < changing_lights_.size() &&
+        if (!is_color(i.payload.light_field())) return false;
+        if (i.payload.light() == kLightAtHand) return of_lamp.lamp;
+        return i.payload.light().index() < changing_lights_.size() &&
                changing_lights_[i.payload.light().index()];
       case Op::ambient:
         return leaves_.ambient;
@@ -55,7 +99,9 @@ class Splitter {
         return leaves_.environment;
       case Op::input:
         if (i.payload.input() == Input::child) return leaves_.children.has(static_cast<Branch>(i.payload.which()));
-        return i.payload.input() == Input::tint && leaves_.tints.has(i.payload.which());
+        if (i.payload.input() == Input::sum) return split_.sums[i.payload.which()].changes;
+        if (i.payload.input() != Input::tint) return false;
+        return i.payload.which() == kPlaceAtHand ? of_lamp.tint : leaves_.tints.has(i.payload.which());
       case Op::texture:
       case Op::procedural_weight:
         if ((leaves_.fields & mask_of(slot)) != 0) return true;
@@ -66,81 +112,66 @@ class Splitter {
       default:
         break;
     }
-    return any_operand(v, [&](Value operand) { return changing_[operand]; });
-  }
-  template <class Test>
-  bool any_operand(Value v, const Test& test) const {
-    for (unsigned k = 0; k < operand_count(code_[v].op); ++k)
-      if (test(code_[v].operands[k])) return true;
-    return false;
+    return any_operand(i, [&](Value operand) { return changing[operand]; });
   }
 
-  /// Notes what the residual needs of a value: a column, unless it changes or is the same for all samples.
-  void demand(Value v) {
-    if (uniform_[v]) return;
-    if (!changing_[v]) {
-      is_column_[v] = true;
-      return;
-    }
-    if (visited_[v]) return;
-    visited_[v] = true;
-    for (unsigned k = 0; k < operand_count(code_[v].op); ++k) demand(code_[v].operands[k]);
-  }
-
-  /// Puts operands in the place of columns where that makes these fewer: three channels that are one value times a
-  /// parameter each need the value alone.
-  void lower_columns() {
-    std::vector<std::uint32_t> users(code_.size());
-    for (bool lowered = true; lowered;) {
-      lowered = false;
-      std::ranges::fill(users, 0);
-      for (Value v = 0; v < code_.size(); ++v)
-        if (Value only = 0; is_column_[v] && has_one_operand(v, only)) ++users[only];
-      for (Value v = 0; v < code_.size(); ++v) {
-        Value only = 0;
-        if (!is_column_[v] || !is_cheap(code_[v].op)) continue;
-        const bool follows = !any_operand(v, [&](Value o) { return !uniform_[o] && !is_column_[o]; });
-        if (follows) {
-          is_column_[v] = false;
-          lowered = true;
-        } else if (has_one_operand(v, only) && users[only] > 1) {
-          is_column_[v] = false;
-          is_column_[only] = true;
-          lowered = true;
+  /// A term whose columns are known.
+  struct OpenTerm {
+    std::size_t sum, term, light_term;
+    std::vector<Value> own;  // columns that depend on the lamp
+  };
+  void split_sum(std::size_t number) {
+    SplitSum& sum = split_.sums[number];
+    if (!sum.changes) return;
+    if (!sum.changes_at_first) sum.read = read_by(program_.sums[number].before);
+    sum.terms.resize(SplitSum::term(kLightTerms, false, false));
+    const std::vector<bool> of_light = find_light_values(code_);
+    for (std::size_t t = 0; t < kLightTerms; ++t) {
+      const auto& term = program_.sums[number].terms[t];
+      if (!term) continue;
+      for (const bool lamp : {false, true})
+        for (const bool tint : {false, true}) {
+          if (!may_be({lamp, tint}) || (tint && !is_filtered(t))) continue;
+          OpenTerm open{number, SplitSum::term(t, lamp, tint), t, {}};
+          std::vector<Value> of_node;
+          for (const Value v : find_columns(code_, uniform_, changing_[variant({lamp, tint})], *term))
+            (of_light[v] ? open.own : of_node).push_back(v);
+          add_columns(of_node);
+          sum.terms[open.term].changes = changes(*term, {lamp, tint});
+          open_terms_.push_back(std::move(open));
         }
-      }
     }
   }
-  /// The only operand that varies from sample to sample.
-  bool has_one_operand(Value v, Value& only) const {
-    if (!is_cheap(code_[v].op)) return false;
-    unsigned count = 0;
-    for (unsigned k = 0; k < operand_count(code_[v].op); ++k) {
-      const Value operand = code_[v].operands[k];
-      if (uniform_[operand] || (count > 0 && operand == only)) continue;
-      only = operand;
-      ++count;
-    }
-    return count == 1;
+  void finish_term(const OpenTerm& open, const Code& rest) {
+    SplitTerm& term = split_.sums[open.sum].terms[open.term];
+    const LightSum::Rgb& outputs = *program_.sums[open.sum].terms[open.light_term];
+    term.constants = make_kernel(with_columns(code_, program_.pieces.columns), open.own);
+    term.baked = read_by(open.own);
+    term.read = read_by(outputs);
+    Code code = rest;
+    for (std::size_t k = 0; k < open.own.size(); ++k)
+      code[open.own[k]] = {Op::column, Payload::number(static_cast<std::uint32_t>(columns_.size() + k)), {}};
+    term.residual = make_kernel(code, {outputs.begin(), outputs.end()});
   }
-
-  /// The program with its columns as inputs.
-  Kernel residual(const std::vector<Value>& columns) const {
-    Code code = code_;
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      code[columns[k]] = {Op::column, Payload::number(static_cast<std::uint32_t>(k)), {}};
-    return make_kernel(code, {program_.result.begin(), program_.result.end()});
-  }
+  void add_columns(std::span<const Value> more) { columns_.insert(columns_.end(), more.begin(), more.end()); }
 
   /// What these values are computed from. The lights are sorted, each once.
-  Dependencies read_by(const std::vector<Value>& values) const {
+  Dependencies read_by(std::span<const Value> values) const {
     std::vector<bool> needed(code_.size());
-    for (Value value : values) needed[value] = true;
+    const auto need = [&](std::span<const Value> more) {
+      for (const Value value : more) needed[value] = true;
+    };
+    need(values);
     Dependencies read;
     for (Value v = static_cast<Value>(code_.size()); v-- > 0;) {
       if (!needed[v]) continue;
       for (unsigned k = 0; k < operand_count(code_[v].op); ++k) needed[code_[v].operands[k]] = true;
       note(code_[v], read);
+      if (code_[v].op != Op::input || code_[v].payload.input() != Input::sum) continue;
+      const LightSum& sum = program_.sums[code_[v].payload.which()];
+      need(sum.before);
+      for (const auto& term : sum.terms)
+        if (term) need(*term);
     }
     std::ranges::sort(read.lights);
     read.lights.erase(std::ranges::unique(read.lights).begin(), read.lights.end());
@@ -167,7 +198,10 @@ class Splitter {
         break;
       case Op::light_field:  // placement never changes while columns are kept
         if (!is_color(i.payload.light_field())) break;
-        read.lights.push_back(i.payload.light());
+        if (i.payload.light() == kLightAtHand)
+          read.lamps = true;
+        else
+          read.lights.push_back(i.payload.light());
         break;
       case Op::ambient:
         read.ambient = true;
@@ -184,8 +218,13 @@ class Splitter {
   const ColorProgram& program_;
   const Code& code_;
   const ChangingLeaves& leaves_;
-  std::vector<bool> uniform_, changing_, is_column_, visited_;
-  std::vector<bool> changing_lights_;  // by id
+  std::vector<bool> uniform_;
+  std::array<std::vector<bool>, 4> changing_;  // by variant()
+  std::vector<bool> changing_lights_;          // by id
+  LampChanges any_;
+  std::vector<Value> columns_;  // of a node
+  std::vector<OpenTerm> open_terms_;
+  SplitProgram split_;
 };
 
 }  // namespace

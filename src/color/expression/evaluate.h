@@ -5,6 +5,7 @@
 
 #include "color/color_scene.h"
 #include "color/expression/lanes.h"
+#include "color/expression/node_sums.h"
 #include "color/expression/program.h"
 #include "trace/tree/tree_block.h"
 
@@ -20,7 +21,13 @@ struct BlockColors {
 struct ColorMemory {
   BlockColors colors;
   Scratch scratch;
+  SumMemory sums;
 };
+
+/// Does a light with this state shed anything on the node?
+[[nodiscard]] constexpr bool reaches(ShadowState state) {
+  return state == ShadowState::open || state == ShadowState::filtered;
+}
 
 /// The product of the filters between a node and a light.
 [[nodiscard]] inline float tint(const LightLink& link, int channel, const BlockColors& colors) {
@@ -48,8 +55,8 @@ struct NodeBatch {
             Scratch& scratch) const;
 };
 
-/// Runs a program for nodes (or filters) `indices` of `block` and stores their colours.
+/// Runs a program for nodes (or filters) `indices` of `block` and stores their colours in memory.colors.
 void evaluate(const BoundProgram& bound, const ColorScene& scene, const TreeBlock& block, bool are_filters,
-              std::span<const std::uint32_t> indices, BlockColors& colors, Scratch& scratch);
+              std::span<const std::uint32_t> indices, ColorMemory& memory);
 
 }  // namespace relook

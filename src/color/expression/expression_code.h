@@ -56,7 +56,7 @@ enum class Input : std::uint8_t {
   child,         // by axis: channel; which: branch
   child_length,  // which: branch
   tint,          // by axis: channel; which: index in the light order
-  reached,       // does that light reach the node, 1 or 0; which: index in the light order
+  sum,           // by axis: channel; which: number of a sum of lamps' light (LightSum in program.h)
   // of the path integrator
   child_direction,  // by axis; which: branch
   child_share,      // 1 / (density of the direction * share of its lobe), steradians; which: branch
@@ -66,6 +66,10 @@ enum class Input : std::uint8_t {
   light_weight,     // by axis: of diffuse, specular and coat lobe
   light_radiance,   // by axis: channel; of that sample at unit colour and intensity
 };
+
+/// In the expression of what any one lamp adds: that lamp, and its place in the light order.
+inline constexpr LightId kLightAtHand{(1U << 24) - 1U};
+inline constexpr std::uint32_t kPlaceAtHand = (1U << 20) - 1U;
 
 /// What an instruction has beside its operands. Op says which of these it is.
 class Payload {

@@ -56,11 +56,8 @@ void gather(Payload payload, const Gathering& from, const BlockColors& colors, f
       return from_nodes(from, out, [&](const RayNode& node) {
         return tint(from.block.lights[node.first_light + which], axis, colors);
       });
-    case Input::reached:
-      return from_nodes(from, out, [&](const RayNode& node) {
-        const ShadowState state = from.block.lights[node.first_light + which].state;
-        return state == ShadowState::open || state == ShadowState::filtered ? 1.0F : 0.0F;
-      });
+    case Input::sum:  // no input of a hit
+      return;
     case Input::child_direction:
       return from_nodes(
           from, out, [&](const RayNode& node) { return from.block.nodes[node.child[which]].ray.direction[axis]; });

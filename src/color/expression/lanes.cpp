@@ -125,7 +125,8 @@ float parameter_value(const Kernel::Step& step, const Parameters& parameters) {
     case Op::slot_color:
       return slot_color(parameters.slot(step), payload.component());
     case Op::light_field:
-      return field_value(scene.light(payload.light()), payload.light_field());
+      return field_value(scene.light(payload.light() == kLightAtHand ? parameters.light : payload.light()),
+                         payload.light_field());
     case Op::ambient:
       return scene.ambient[static_cast<int>(payload.number())];
     case Op::environment:

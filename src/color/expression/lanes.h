@@ -47,6 +47,7 @@ struct Scratch {
 struct Parameters {
   const Scene& scene;
   MaterialId material;  // none for the environment
+  LightId light{};      // the lamp at hand, of what one lamp adds
   [[nodiscard]] const TextureSlot& slot(const Kernel::Step& step) const {
     return scene.material(material).slot(step.payload.slot());
   }

@@ -20,7 +20,7 @@ struct ParameterSet {
   /// Are all of `others` in the set?
   [[nodiscard]] bool contains(const ParameterSet& others) const;
   void add(const ParameterSet& others);
-  /// Does a program read any of them?
+  /// Does a program read any of them? Not counted: those of lamps that reach the node (Dependencies::lamps).
   [[nodiscard]] bool reaches(const BoundProgram& bound) const {
     return reaches(bound.material, bound.program->dependencies);
   }

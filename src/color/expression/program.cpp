@@ -78,8 +78,20 @@ Value ExpressionBuilder::field(Field field, unsigned component) {
 
 Value ExpressionBuilder::light(LightId light, LightField field) {
   auto& lights = dependencies_.lights;
-  if (lights.empty() || lights.back() != light) lights.push_back(light);  // a model takes one lamp after the other
+  const auto place = std::ranges::lower_bound(lights, light);
+  if (place == lights.end() || *place != light) lights.insert(place, light);
   return emit({Op::light_field, Payload::of(field, light), {}});
+}
+
+Value ExpressionBuilder::light_at_hand(LightField field) {
+  dependencies_.lamps = true;
+  return emit({Op::light_field, Payload::of(field, kLightAtHand), {}});
+}
+
+LightSum::Rgb ExpressionBuilder::sum(LightSum sum) {
+  const auto number = static_cast<std::uint32_t>(sums_.size());
+  sums_.push_back(std::move(sum));
+  return {input(Input::sum, 0, number), input(Input::sum, 1, number), input(Input::sum, 2, number)};
 }
 
 Value ExpressionBuilder::ambient(unsigned component) {
@@ -146,7 +158,11 @@ ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>
   ColorProgram program;
   program.code = builder.code();
   program.result = result;
-  program.kernel = make_kernel(program.code, {result.begin(), result.end()});
+  program.sums = builder.sums();
+  if (program.sums.empty())
+    program.kernel = make_kernel(program.code, {result.begin(), result.end()});
+  else
+    program.pieces = make_pieces(program.code, program.sums, result);
   program.dependencies = builder.dependencies();
   return program;
 }

@@ -9,6 +9,7 @@
 
 #include "color/expression/expression_code.h"
 #include "color/expression/field.h"
+#include "color/expression/pieces.h"
 
 namespace relook {
 
@@ -24,7 +25,8 @@ struct InstructionHash {
 struct Dependencies {
   FieldMask material = 0;  // of the node's own material, its structure included
   bool ambient = false, environment = false;
-  std::vector<LightId> lights;  // whose colour parameters are read
+  std::vector<LightId> lights;  // whose colour parameters are read; increasing, each once
+  bool lamps = false;           // likewise those of all lamps that reach the node
 };
 
 /// What of a material decides the shape of its expressions: materials with equal structures share programs.
@@ -51,6 +53,9 @@ class ExpressionBuilder {
   [[nodiscard]] Value constant(float value);
   [[nodiscard]] Value field(Field field, unsigned component = 0);
   [[nodiscard]] Value light(LightId light, LightField field);
+  [[nodiscard]] Value light_at_hand(LightField field);
+  /// The channels of a sum with the light of all lamps.
+  [[nodiscard]] LightSum::Rgb sum(LightSum sum);
   [[nodiscard]] Value ambient(unsigned component);
   [[nodiscard]] Value environment(unsigned component);
   [[nodiscard]] Value input(Input input, unsigned axis = 0, std::uint32_t which = 0);
@@ -70,6 +75,7 @@ class ExpressionBuilder {
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
   [[nodiscard]] const Code& code() const { return code_; }
+  [[nodiscard]] const std::vector<LightSum>& sums() const { return sums_; }
   [[nodiscard]] const Dependencies& dependencies() const { return dependencies_; }
 
  private:
@@ -86,14 +92,17 @@ class ExpressionBuilder {
   MaterialStructure structure_;
   Code code_;
   std::unordered_map<Instruction, Value, InstructionHash> known_;
+  std::vector<LightSum> sums_;
   Dependencies dependencies_;
 };
 
-/// A finished program: the expression, and the same ready to run.
+/// A finished program: the expression, and the same ready to run, as one kernel or, where lamps add to sums, in pieces.
 struct ColorProgram {
   Code code;
   std::array<Value, 4> result{};  // R, G, B, A
-  Kernel kernel;                  // outputs: R, G, B, A
+  std::vector<LightSum> sums;     // each may read those before it
+  Kernel kernel;                  // without sums; outputs: R, G, B, A
+  Pieces pieces;                  // with sums
   Dependencies dependencies;
 };
 [[nodiscard]] ColorProgram finish(const ExpressionBuilder& builder, const std::array<Value, 4>& result);

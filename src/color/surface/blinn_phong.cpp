@@ -15,13 +15,12 @@ Triple blinn_phong_color(SurfaceTerms& terms) {
   Triple sum = terms.counts(kAmbientSource)
                    ? terms.ambient() * terms.field3(Field::phong_ambient) * base * terms.occlusion()
                    : terms.grey(0);
-  for (const VisibleLight& light : terms.key().lights) {
-    const Incidence lamp = terms.incidence(light);
-    const Scalar nl = max(dot(normal, lamp.direction), 0.0F);
-    const Scalar nh = max(dot(normal, normalized(lamp.direction + terms.view())), 1e-7F);
+  sum = terms.with_lamps(sum, [&](const Triple& direction) {
+    const Scalar nl = max(dot(normal, direction), 0.0F);
+    const Scalar nh = max(dot(normal, normalized(direction + terms.view())), 1e-7F);
     const Scalar lobe = phong_lobe(shininess, nh);
-    sum = terms.with(light, sum, (diffuse + specular * lobe) * nl * lamp.irradiance);
-  }
+    return (diffuse + specular * lobe) * nl;
+  });
   if (terms.counts(kEmissionSource)) sum = sum + terms.emission();
   if (terms.has_child(Branch::reflection)) sum = sum + terms.child(Branch::reflection) * terms.field(Field::reflection);
   if (terms.has_child(Branch::refraction)) sum = sum + terms.child(Branch::refraction) * terms.field(Field::refraction);

@@ -13,12 +13,8 @@ Triple layered_color(SurfaceTerms& terms) {
   BaseLayer base(terms);
   Triple sum = base.view_terms();
   if (terms.key().interface_only) return sum;
-  const std::vector<VisibleLight>& lights = terms.key().lights;
-  std::vector<Incidence> lamps;
-  for (const VisibleLight& light : lights) lamps.push_back(terms.incidence(light));
   const auto add_lamps = [&](auto& layer) {
-    for (std::size_t i = 0; i < lamps.size(); ++i)
-      sum = terms.with(lights[i], sum, layer.reflected(lamps[i].direction) * lamps[i].irradiance);
+    sum = terms.with_lamps(sum, [&](const Triple& direction) { return layer.reflected(direction); });
   };
   add_lamps(base);
   if (terms.builder().shape(Field::sheen_color).sheen) {

@@ -3,7 +3,6 @@
 #pragma once
 #include <compare>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "base/id.h"
@@ -21,11 +20,11 @@ enum class Aspect : std::uint8_t { color, albedo, normal };
 enum Source : std::uint8_t { kAmbientSource = 1, kEnvironmentSource = 2, kEmissionSource = 4, kAllSources = 7 };
 
 /// A light that reaches a node. `order`: its place in the light order; `filtered`: transparent surfaces may stand in
-/// between; `asked`: each node says for itself whether the light reaches it.
+/// between.
 struct VisibleLight {
   LightId light;
   std::uint32_t order = 0;
-  bool filtered = false, asked = false;
+  bool filtered = false;
   auto operator<=>(const VisibleLight&) const = default;
 };
 
@@ -39,6 +38,7 @@ struct NodeKey {
   BranchSet children;
   Aspect aspect = Aspect::color;
   std::uint8_t sources = kAllSources;  // that count
+  bool sums = false;  // the program adds whichever lamps reach a node: it is one for all `lights`
   std::vector<VisibleLight> lights;
   auto operator<=>(const NodeKey&) const = default;
 };
@@ -53,10 +53,8 @@ struct ColorPart {
 };
 [[nodiscard]] NodeKey restricted(NodeKey key, const ColorPart& part);
 
-/// With more lights than this in a scene, hardly two nodes see the same ones: programs then take all lights, asked, so
-/// that there are as few programs as ever. The bits are those of programs for the lights that reach a node.
-inline constexpr std::size_t kMostTellingLights = 32;
-/// The lights of a scene's order as such a program takes them.
-[[nodiscard]] std::vector<VisibleLight> asked_lights(std::span<const LightId> order);
+/// With more lights than this in a scene, programs by visible lights would be as many as nodes: programs then add
+/// whichever lamps reach a node. The bits are the same.
+inline constexpr std::size_t kMostTellingLights = 6;
 
 }  // namespace relook

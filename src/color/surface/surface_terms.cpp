@@ -55,33 +55,44 @@ Triple SurfaceTerms::normal(Slot slot, Field scale) {
 }
 
 Incidence SurfaceTerms::incidence(const VisibleLight& visible) {
-  const LightId id = visible.light;
-  const auto of = [&](LightField f) { return Scalar{&b_, b_.light(id, f)}; };
-  const LightTraits& traits = traits_of(b_.scene().light(id).kind);
+  return incidence(
+      traits_of(b_.scene().light(visible.light).kind), visible.filtered,
+      [&](LightField f) { return Scalar{&b_, b_.light(visible.light, f)}; },
+      [&] { return input3(Input::tint, visible.order); });
+}
+
+Incidence SurfaceTerms::incidence(LightKind kind, bool filtered) {
+  return incidence(
+      traits_of(kind), filtered, [&](LightField f) { return Scalar{&b_, b_.light_at_hand(f)}; },
+      [&] { return input3(Input::tint, kPlaceAtHand); });
+}
+
+template <class Of, class Tint>
+Incidence SurfaceTerms::incidence(const LightTraits& traits, bool filtered, const Of& of, const Tint& tint) {
   const Triple color{of(LightField::red), of(LightField::green), of(LightField::blue)};
   const Triple axis{of(LightField::dx), of(LightField::dy), of(LightField::dz)};
-  Incidence incidence{axis * number(-1), color * of(LightField::intensity)};
+  Incidence arriving{axis * number(-1), color * of(LightField::intensity)};
   if (traits.has_place) {
     const Triple way = Triple{of(LightField::x), of(LightField::y), of(LightField::z)} - input3(Input::position);
     const Scalar distance2 = max(dot(way, way), 1e-8F);
     const Scalar distance = sqrt(distance2);
-    incidence.direction = way * (1.0F / distance);
+    arriving.direction = way * (1.0F / distance);
     const Scalar reach = distance * of(LightField::inverse_range);
     const Scalar reach2 = reach * reach;
     Scalar share = max(1.0F - reach2 * reach2, 0.0F) / distance2;
     if (traits.has_cone) {
       // Cosines near 1 have no digits left for narrow cones: 1 - cos is half the square of what lies between
       // directions.
-      const Triple beside = incidence.direction + axis;
+      const Triple beside = arriving.direction + axis;
       const Scalar versine = dot(beside, beside) * 0.5F;
       const Scalar inwards = of(LightField::outer_versine) - versine;
       const Scalar t = min(max(inwards * of(LightField::inverse_cone_width), 0.0F), 1.0F);
       share = share * (t * t);
     }
-    incidence.irradiance = incidence.irradiance * share;
+    arriving.irradiance = arriving.irradiance * share;
   }
-  if (visible.filtered) incidence.irradiance = incidence.irradiance * input3(Input::tint, visible.order);
-  return incidence;
+  if (filtered) arriving.irradiance = arriving.irradiance * tint();
+  return arriving;
 }
 
 Scalar SurfaceTerms::ior() {

@@ -45,10 +45,27 @@ class SurfaceTerms {
 
   [[nodiscard]] bool counts(Source source) const { return (key_.sources & source) != 0; }
   [[nodiscard]] Incidence incidence(const VisibleLight& light);
-  /// A sum and what a light adds to it, where it reaches the node.
-  [[nodiscard]] Triple with(const VisibleLight& light, const Triple& sum, const Triple& added) {
-    if (!light.asked) return sum + added;
-    return if_positive(input(Input::reached, 0, light.order), sum + added, sum);
+  /// The light of whichever lamp is at hand: in what one lamp adds to a sum (LightSum).
+  [[nodiscard]] Incidence incidence(LightKind kind, bool filtered);
+  /// A sum and the light of the lamps that reach the node, one after the other. `reflected`: of a lamp's direction, the
+  /// value of lobes times NL.
+  template <class Reflected>
+  [[nodiscard]] Triple with_lamps(Triple sum, const Reflected& reflected) {
+    const auto light = [&](const Incidence& lamp) { return reflected(lamp.direction) * lamp.irradiance; };
+    if (!key_.sums) {
+      for (const VisibleLight& lamp : key_.lights) sum = sum + light(incidence(lamp));
+      return sum;
+    }
+    LightSum of;
+    of.before = of_channel(sum);
+    for (const LightId lamp : b_.scene().light_order)
+      for (const bool filtered : {false, true}) {
+        const LightKind kind = b_.scene().light(lamp).kind;
+        auto& term = of.terms[light_term(kind, filtered)];
+        if (!term) term = of_channel(light(incidence(kind, filtered)));
+      }
+    const LightSum::Rgb whole = b_.sum(std::move(of));
+    return {{&b_, whole[0]}, {&b_, whole[1]}, {&b_, whole[2]}};
   }
   [[nodiscard]] bool has_child(Branch branch) const { return key_.children.has(branch); }
   [[nodiscard]] Triple child(Branch branch) { return input3(Input::child, static_cast<std::uint32_t>(branch)); }
@@ -69,6 +86,17 @@ class SurfaceTerms {
   [[nodiscard]] const NodeKey& key() const { return key_; }
 
  private:
+  /// `of`: a field of the lamp; `tint`: that of what stands before it.
+  template <class Of, class Tint>
+  [[nodiscard]] Incidence incidence(const LightTraits& traits, bool filtered, const Of& of, const Tint& tint);
+  /// The channels that are asked for.
+  [[nodiscard]] LightSum::Rgb of_channel(const Triple& color) {
+    const auto one = [&](Channel channel, Scalar value) {
+      return channel_ == Channel::all || channel_ == channel ? value.value : b_.constant(0);
+    };
+    return {one(Channel::red, color.x), one(Channel::green, color.y), one(Channel::blue, color.z)};
+  }
+
   ExpressionBuilder& b_;
   const NodeKey& key_;
   Channel channel_ = Channel::all;
