@@ -9,7 +9,7 @@
 #include "edit/journal_walk.h"
 #include "frame/frame_layers.h"
 #include "frame/preview.h"
-#include "image/layered_frame.h"
+#include "image/layers/layered_frame.h"
 #include "input/load_scene.h"
 #include "options/named_files.h"
 #include "options/outputs.h"

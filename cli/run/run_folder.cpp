@@ -13,7 +13,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "edit/journal_walk.h"
-#include "image/layered_frame.h"
+#include "image/layers/layered_frame.h"
 #include "image/overlay.h"
 #include "page/run_page.h"
 #include "report/report_file.h"

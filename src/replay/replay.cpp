@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "replay/drag.h"
 #include "replay/image_pass.h"
-#include "replay/path_step.h"
+#include "replay/path/path_step.h"
 #include "replay/recolor.h"
 #include "replay/replay_parts.h"
 

@@ -9,7 +9,7 @@
 #include "edit/apply.h"
 #include "frame/cryptomatte.h"
 #include "frame/exact_sum.h"
-#include "image/layered_frame.h"
+#include "image/layers/layered_frame.h"
 #include "layer_file.h"
 #include "run_program.h"
 #include "test_scenes.h"

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "frame/frame_layers.h"
 #include "image/image_pieces.h"
-#include "image/layered_frame.h"
+#include "image/layers/layered_frame.h"
 #include "layer_file.h"
 #include "run_program.h"
 #include "scene/light_sums.h"

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "edit/apply.h"
 #include "frame/frame_layers.h"
-#include "image/layered_frame.h"
+#include "image/layers/layered_frame.h"
 #include "layer_file.h"
 #include "replay/replay.h"
 #include "run_program.h"

@@ -1,11 +1,11 @@
-#include "replay/path_step.h"
+#include "replay/path/path_step.h"
 
 #include <algorithm>
 
 #include "base/parallel.h"
 #include "edit/apply.h"
 #include "image/image_pieces.h"
-#include "replay/path_tile.h"
+#include "replay/path/path_tile.h"
 
 namespace relook {
 namespace {

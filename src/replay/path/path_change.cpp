@@ -1,4 +1,4 @@
-#include "replay/path_change.h"
+#include "replay/path/path_change.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "image/layered_frame.h"
+#include "image/layers/layered_frame.h"
 
 #include <algorithm>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "frame/half_bits.h"
-#include "image/layer_tile.h"
+#include "image/layers/layer_tile.h"
 
 namespace relook {
 namespace {

@@ -1,4 +1,4 @@
-#include "image/layer_tile.h"
+#include "image/layers/layer_tile.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "replay/path_tile.h"
+#include "replay/path/path_tile.h"
 
 #include "base/parallel.h"
 #include "image/sampling.h"

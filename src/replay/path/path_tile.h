@@ -3,7 +3,7 @@
 // the same time.
 #pragma once
 #include "image/tile_light.h"
-#include "replay/path_change.h"
+#include "replay/path/path_change.h"
 #include "replay/replay_parts.h"
 #include "trace/tree/grow.h"
 
