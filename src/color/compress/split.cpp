@@ -49,7 +49,7 @@ class Splitter {
   [[nodiscard]] bool may_be(const LampChanges& changes) const {
     return (any_.lamp || !changes.lamp) && (any_.tint || !changes.tint);
   }
-  [[nodiscard]] const LightSum::Rgb& before(const SplitSum& sum) const {
+  [[nodiscard]] const LampSum::Rgb& before(const SplitSum& sum) const {
     return program_.sums[static_cast<std::size_t>(&sum - split_.sums.data())].before;
   }
 
@@ -69,7 +69,7 @@ class Splitter {
     }
   }
   void note_sum(std::size_t number) {
-    const LightSum& sum = program_.sums[number];
+    const LampSum& sum = program_.sums[number];
     SplitSum& split = split_.sums[number];
     split.changes_at_first = changes(sum.before, any_);
     split.changes = split.changes_at_first || std::ranges::any_of(sum.terms, [&](const auto& term) {
@@ -144,7 +144,7 @@ class Splitter {
   }
   void finish_term(const OpenTerm& open, const Code& rest) {
     SplitTerm& term = split_.sums[open.sum].terms[open.term];
-    const LightSum::Rgb& outputs = *program_.sums[open.sum].terms[open.light_term];
+    const LampSum::Rgb& outputs = *program_.sums[open.sum].terms[open.light_term];
     term.constants = make_kernel(with_columns(code_, program_.pieces.columns), open.own);
     term.baked = read_by(open.own);
     term.read = read_by(outputs);
@@ -168,7 +168,7 @@ class Splitter {
       for (unsigned k = 0; k < operand_count(code_[v].op); ++k) needed[code_[v].operands[k]] = true;
       note(code_[v], read);
       if (code_[v].op != Op::input || code_[v].payload.input() != Input::sum) continue;
-      const LightSum& sum = program_.sums[code_[v].payload.which()];
+      const LampSum& sum = program_.sums[code_[v].payload.which()];
       need(sum.before);
       for (const auto& term : sum.terms)
         if (term) need(*term);

@@ -56,7 +56,7 @@ enum class Input : std::uint8_t {
   child,         // by axis: channel; which: branch
   child_length,  // which: branch
   tint,          // by axis: channel; which: index in the light order
-  sum,           // by axis: channel; which: number of a sum of lamps' light (LightSum in program.h)
+  sum,           // by axis: channel; which: number of a sum of lamps' light (LampSum in program.h)
   // of the path integrator
   child_direction,  // by axis; which: branch
   child_share,      // 1 / (density of the direction * share of its lobe), steradians; which: branch

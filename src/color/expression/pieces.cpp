@@ -21,7 +21,7 @@ std::vector<bool> find_light_values(const Code& code) {
   return reads;
 }
 
-Pieces make_pieces(const Code& code, std::span<const LightSum> sums, const std::array<Value, 4>& result) {
+Pieces make_pieces(const Code& code, std::span<const LampSum> sums, const std::array<Value, 4>& result) {
   const std::vector<bool> uniform = find_uniform(code);
   std::vector<bool> changing = find_light_values(code);
   for (Value v = 0; v < code.size(); ++v)
@@ -32,7 +32,7 @@ Pieces make_pieces(const Code& code, std::span<const LightSum> sums, const std::
     const std::vector<Value> columns = find_columns(code, uniform, changing, wanted);
     pieces.columns.insert(pieces.columns.end(), columns.begin(), columns.end());
   };
-  for (const LightSum& sum : sums) {
+  for (const LampSum& sum : sums) {
     want(sum.before);
     for (const auto& term : sum.terms)
       if (term) want(*term);
@@ -44,7 +44,7 @@ Pieces make_pieces(const Code& code, std::span<const LightSum> sums, const std::
 
   pieces.constants = make_kernel(code, pieces.columns);
   const Code rest = with_columns(code, pieces.columns);
-  for (const LightSum& sum : sums) {
+  for (const LampSum& sum : sums) {
     pieces.stages.push_back(make_kernel(rest, {sum.before.begin(), sum.before.end()}));
     auto& terms = pieces.terms.emplace_back();
     for (std::size_t t = 0; t < kLightTerms; ++t)

@@ -20,7 +20,7 @@ inline constexpr std::size_t kLightTerms = 2 * kLightKinds;
 
 /// A sum to which the lamps that reach a node add their light, one after the other in the light order. The sum with all
 /// of it is Input::sum, behind all these expressions in the code.
-struct LightSum {
+struct LampSum {
   using Rgb = std::array<Value, 3>;
   Rgb before{};  // the sum without any lamp
   std::array<std::optional<Rgb>, kLightTerms> terms;  // what a lamp adds, for the kinds of lights that the scene has
@@ -36,6 +36,6 @@ struct Pieces {
   std::vector<Kernel> stages;  // read columns and sums; by sum: R, G, B before it; the last: R, G, B, A
   std::vector<std::array<Kernel, kLightTerms>> terms;  // by sum: R, G, B; read columns and the lamp at hand
 };
-[[nodiscard]] Pieces make_pieces(const Code& code, std::span<const LightSum> sums, const std::array<Value, 4>& result);
+[[nodiscard]] Pieces make_pieces(const Code& code, std::span<const LampSum> sums, const std::array<Value, 4>& result);
 
 }  // namespace relook

@@ -88,7 +88,7 @@ Value ExpressionBuilder::light_at_hand(LightField field) {
   return emit({Op::light_field, Payload::of(field, kLightAtHand), {}});
 }
 
-LightSum::Rgb ExpressionBuilder::sum(LightSum sum) {
+LampSum::Rgb ExpressionBuilder::sum(LampSum sum) {
   const auto number = static_cast<std::uint32_t>(sums_.size());
   sums_.push_back(std::move(sum));
   return {input(Input::sum, 0, number), input(Input::sum, 1, number), input(Input::sum, 2, number)};

@@ -55,7 +55,7 @@ class ExpressionBuilder {
   [[nodiscard]] Value light(LightId light, LightField field);
   [[nodiscard]] Value light_at_hand(LightField field);
   /// The channels of a sum with the light of all lamps.
-  [[nodiscard]] LightSum::Rgb sum(LightSum sum);
+  [[nodiscard]] LampSum::Rgb sum(LampSum sum);
   [[nodiscard]] Value ambient(unsigned component);
   [[nodiscard]] Value environment(unsigned component);
   [[nodiscard]] Value input(Input input, unsigned axis = 0, std::uint32_t which = 0);
@@ -75,7 +75,7 @@ class ExpressionBuilder {
   [[nodiscard]] const Scene& scene() const { return scene_; }
 
   [[nodiscard]] const Code& code() const { return code_; }
-  [[nodiscard]] const std::vector<LightSum>& sums() const { return sums_; }
+  [[nodiscard]] const std::vector<LampSum>& sums() const { return sums_; }
   [[nodiscard]] const Dependencies& dependencies() const { return dependencies_; }
 
  private:
@@ -92,7 +92,7 @@ class ExpressionBuilder {
   MaterialStructure structure_;
   Code code_;
   std::unordered_map<Instruction, Value, InstructionHash> known_;
-  std::vector<LightSum> sums_;
+  std::vector<LampSum> sums_;
   Dependencies dependencies_;
 };
 
@@ -100,7 +100,7 @@ class ExpressionBuilder {
 struct ColorProgram {
   Code code;
   std::array<Value, 4> result{};  // R, G, B, A
-  std::vector<LightSum> sums;     // each may read those before it
+  std::vector<LampSum> sums;     // each may read those before it
   Kernel kernel;                  // without sums; outputs: R, G, B, A
   Pieces pieces;                  // with sums
   Dependencies dependencies;

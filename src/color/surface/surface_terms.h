@@ -45,7 +45,7 @@ class SurfaceTerms {
 
   [[nodiscard]] bool counts(Source source) const { return (key_.sources & source) != 0; }
   [[nodiscard]] Incidence incidence(const VisibleLight& light);
-  /// The light of whichever lamp is at hand: in what one lamp adds to a sum (LightSum).
+  /// The light of whichever lamp is at hand: in what one lamp adds to a sum (LampSum).
   [[nodiscard]] Incidence incidence(LightKind kind, bool filtered);
   /// A sum and the light of the lamps that reach the node, one after the other. `reflected`: of a lamp's direction, the
   /// value of lobes times NL.
@@ -56,7 +56,7 @@ class SurfaceTerms {
       for (const VisibleLight& lamp : key_.lights) sum = sum + light(incidence(lamp));
       return sum;
     }
-    LightSum of;
+    LampSum of;
     of.before = of_channel(sum);
     for (const LightId lamp : b_.scene().light_order)
       for (const bool filtered : {false, true}) {
@@ -64,7 +64,7 @@ class SurfaceTerms {
         auto& term = of.terms[light_term(kind, filtered)];
         if (!term) term = of_channel(light(incidence(kind, filtered)));
       }
-    const LightSum::Rgb whole = b_.sum(std::move(of));
+    const LampSum::Rgb whole = b_.sum(std::move(of));
     return {{&b_, whole[0]}, {&b_, whole[1]}, {&b_, whole[2]}};
   }
   [[nodiscard]] bool has_child(Branch branch) const { return key_.children.has(branch); }
@@ -90,7 +90,7 @@ class SurfaceTerms {
   template <class Of, class Tint>
   [[nodiscard]] Incidence incidence(const LightTraits& traits, bool filtered, const Of& of, const Tint& tint);
   /// The channels that are asked for.
-  [[nodiscard]] LightSum::Rgb of_channel(const Triple& color) {
+  [[nodiscard]] LampSum::Rgb of_channel(const Triple& color) {
     const auto one = [&](Channel channel, Scalar value) {
       return channel_ == Channel::all || channel_ == channel ? value.value : b_.constant(0);
     };
