@@ -69,8 +69,8 @@ TEST(PathOneEstimate, a_coat_holds_back_emission_from_samples_as_from_rays) {
 }
 
 TEST(PathOneEstimate, a_light_inside_of_rough_glass_is_seen_in_its_faces) {
-  // The inside of a volume has no samples of lights: its rays alone bring them. A window of radiance 1 fills all but the
-  // horizon of a place on the lower face, which then shows the albedo of its microfacets.
+  // The inside of a volume has no samples of lights: its rays alone bring them. A window of radiance 1 fills all but
+  // the horizon of a place on the lower face, which then shows the albedo of its microfacets.
   PathStudio scene;
   Json material = glass(1.5, 1);
   material["pbrMetallicRoughness"]["roughnessFactor"] = 0.75;
