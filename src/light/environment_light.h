@@ -1,6 +1,7 @@
-// An environment image as light, split for sampling (LIGHT.md section 3): the sky is the image scaled down, hue kept,
-// to a luminance of at most t; the suns are the rest. Lobe rays alone gather the sky; the suns have a distribution of
-// their own. t = 4 x the solid-angle mean of min(L, t), the largest such t, over the texels' luminances L.
+// An environment image as light, split for sampling (color/PATH.md, "Sky and suns"): the sky is the image scaled down,
+// hue kept, to a luminance of at most t; the suns are the rest. Lobe rays alone gather the sky; the suns have a
+// distribution of their own. t = 4 x the solid-angle mean of min(L, t), the largest such t, over the texels'
+// luminances L.
 //
 // The split acts on the *interpolated* texel, so that a colour program that looks up the image can compute it with
 // equal bits, in this order:

@@ -14,11 +14,11 @@ namespace {
 /// Quarters of a picture of 16 x 16, then all of it.
 constexpr std::size_t kParts = 5;
 
-/// Differences with the oracle are zero but for noise. `side`: of the grid of samples in a pixel.
-void expect_reference(PathStudio& scene, const std::string& what, unsigned side = 8, unsigned rounds = 1) {
+/// Differences with the oracle are zero but for noise.
+void expect_reference(const PathStudio& scene, const std::string& what, unsigned samples = 64) {
   const SceneState state = scene.path_state();
-  const std::vector<Vec> program = colors_of(scene.frame(side * side));
-  const std::vector<PathReference::Pixel> oracle = PathReference(state.scene()).pixels(side, rounds, 26);
+  const std::vector<Vec> program = colors_of(scene.frame(samples));
+  const std::vector<PathReference::Pixel> oracle = PathReference(state.scene()).pixels(samples, 26);
   ASSERT_EQ(program.size(), oracle.size());
   std::array<std::vector<Vec>, kParts> differences, expected;
   const std::size_t width = state.scene().camera.width;

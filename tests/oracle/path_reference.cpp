@@ -98,11 +98,20 @@ PathReference::Surface PathReference::surface_at(const Found& found, const Vec& 
   if (world.determinant() < 0) front = -front;
   s.inside = front.dot(way) > 0;
   s.ng = s.n = s.inside ? -front : front;
+  s.lift = kBlack;
   if (!mesh.normals.empty()) {
     const auto& [i, j, k] = mesh.triangles[triangle.primitive];
-    const Vec local = Vec(mesh.normals[i]) * (1 - found.u - found.v) + Vec(mesh.normals[j]) * found.u +
-                      Vec(mesh.normals[k]) * found.v;
-    world.inverse().transposed().multDirMatrix(local, s.n);
+    const std::uint32_t corners[] = {i, j, k};
+    const double weights[] = {1 - found.u - found.v, found.u, found.v};
+    Vec at = kBlack, normal = kBlack, lift = kBlack;
+    for (int c = 0; c < 3; ++c) at += Vec(mesh.positions[corners[c]]) * weights[c];
+    for (int c = 0; c < 3; ++c) {
+      const Vec one = Vec(mesh.normals[corners[c]]) * (s.inside ? -1.0 : 1.0);
+      normal += one * weights[c];
+      lift += one * (weights[c] * std::max((Vec(mesh.positions[corners[c]]) - at).dot(one), 0.0));
+    }
+    world.multDirMatrix(lift, s.lift);
+    world.inverse().transposed().multDirMatrix(normal, s.n);
     s.n.normalize();
     if (s.n.dot(s.ng) < 0) s.n = -s.n;
   }
@@ -156,7 +165,6 @@ Vec PathReference::crossed(const Ray& ray, double end) const {
 }
 
 Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind, Random& random) const {
-  const Vec origin = s.p + s.ng * kOffset;
   Vec way, arriving;  // radiance over the density of the sample, or irradiance
   double distance = 1e30;
   if (light.kind == LightKind::suns) return kBlack;
@@ -214,7 +222,9 @@ Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind
   if (!is_sized || Surface::is_wide(s.alpha)) value += s.specular(way);
   if (!is_sized || Surface::is_wide(s.coat_alpha)) value += s.coating(way);
   const Vec light_there = value * arriving;
-  return is_black(light_there) ? kBlack : light_there * passed(origin, way, distance);
+  if (is_black(light_there)) return kBlack;
+  const Vec origin = s.p + s.lift * std::clamp(1 - s.ng.dot(way) / 0.1, 0.0, 1.0) + s.ng * kOffset;
+  return light_there * passed(origin, way, distance);
 }
 
 Vec PathReference::gathered(const Surface& s, const Ray& ray, Random& random) const {
@@ -327,18 +337,16 @@ Vec PathReference::radiance(const Ray& ray, Random& random) const {
   return sum;
 }
 
-std::vector<PathReference::Pixel> PathReference::pixels(unsigned side, unsigned rounds, std::uint64_t seed) const {
+std::vector<PathReference::Pixel> PathReference::pixels(unsigned samples, std::uint64_t seed) const {
   const Camera& camera = scene_.camera;
   Random random(seed);
   std::vector<Pixel> result;
-  const double n = double{1} * side * side * rounds;
   for (std::uint32_t y = 0; y < camera.height; ++y) {
     for (std::uint32_t x = 0; x < camera.width; ++x) {
       Vec sum = kBlack, squares = kBlack;
-      for (unsigned k = 0; k < side * side * rounds; ++k) {
-        const auto at = [&](unsigned i) { return (static_cast<float>(i) + 0.5F) / static_cast<float>(side); };
-        const CameraRay from = camera_ray(camera, static_cast<float>(x) + at(k % side),
-                                          static_cast<float>(y) + at(k / side % side));
+      for (unsigned k = 0; k < samples; ++k) {
+        const double across = x + number(random), down = y + number(random);
+        const CameraRay from = camera_ray(camera, static_cast<float>(across), static_cast<float>(down));
         Ray ray{};
         ray.origin = Vec(from.origin);
         ray.way = Vec(from.direction).normalized();
@@ -346,8 +354,8 @@ std::vector<PathReference::Pixel> PathReference::pixels(unsigned side, unsigned 
         sum += value;
         squares += value * value;
       }
-      const Vec mean = sum / n;
-      result.push_back({mean, (squares / n - mean * mean) / (n - 1)});
+      const Vec mean = sum / samples;
+      result.push_back({mean, (squares / samples - mean * mean) / (samples - 1.0)});
     }
   }
   return result;

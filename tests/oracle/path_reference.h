@@ -20,9 +20,8 @@ class PathReference {
     Vec mean{0, 0, 0};
     Vec variance{0, 0, 0};  // of the mean
   };
-  /// `rounds` times a sample at each of side x side even places of every pixel, as the program has them for side^2
-  /// samples. Row by row.
-  [[nodiscard]] std::vector<Pixel> pixels(unsigned side, unsigned rounds, std::uint64_t seed) const;
+  /// From so many samples at random places in each, row by row.
+  [[nodiscard]] std::vector<Pixel> pixels(unsigned samples, std::uint64_t seed) const;
 
  private:
   struct Ray {

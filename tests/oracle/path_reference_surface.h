@@ -10,6 +10,7 @@ struct PathReference::Surface {
   SurfaceOptics optics;
   bool inside;
   Vec p, ng, n, view;
+  Vec lift;  // to the smooth surface, as segments leave it at the horizon
   double nv, alpha, coat_alpha;
 
   [[nodiscard]] bool is_interface() const { return optics.volume && inside; }
