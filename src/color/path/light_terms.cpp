@@ -71,13 +71,16 @@ std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& bl
     term->radiance = sample->radiance * lamp_share(light, node.point.position);
     const VertexLobes& lobes = block.lobes[node.lobes];
     const bool through_volume = has_volume_on(scene, block, block.lights[node.first_light + place]);
+    // No ray of a lobe leads below the triangle; samples may, where the smooth surface is lit.
+    const bool lobes_reach = sample->way.dot(node.point.geometric) > 0;
     constexpr std::array kLobes{Lobe::diffuse, Lobe::specular, Lobe::coat};
     for (std::size_t k = 0; k < kLobes.size(); ++k) {
+      const float other = lobes_reach ? lobes.density(kLobes[k], sample->way) : 0.0F;
       // Through volumes either the samples or the rays bring the light, as the lobe is wide or narrow.
       if (through_volume)
         term->weights[k] = lobes.is_wide(kLobes[k]) ? 1 / sample->density : 0.0F;
       else
-        term->weights[k] = weight_of(sample->density, lobes.density(kLobes[k], sample->way)) / sample->density;
+        term->weights[k] = weight_of(sample->density, other) / sample->density;
     }
   }
   if (!term) return std::nullopt;
@@ -88,7 +91,7 @@ std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& bl
 
 float met_weight(const RayNode& node, const RayLight& light, float density) {
   const PathState& path = node.ray.path;
-  if (!(path.density > 0)) return 1;
+  if (!(path.density > 0) || path.is_alone) return 1;
   return weight_of(path.density, density * (path.is_first ? 1.0F : light.rate));
 }
 

@@ -19,7 +19,8 @@ struct PathState {
   bool is_eye = true;         // nothing has turned it
   bool gathers = false;       // where it ends, emission counts and nothing is scattered
   bool is_shut = false;       // from a wide lobe, through volumes alone: lights with a size reach that lobe by segments
-  bool is_wide = false;       // of a wide lobe, as long as it runs straight
+  bool is_wide = false;       // of a wide lobe whose lights have samples, as long as it runs straight
+  bool is_alone = false;      // no sample of a light stands for its way
 };
 
 }  // namespace relook

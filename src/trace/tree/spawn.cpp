@@ -5,6 +5,7 @@
 #include "physics/dispersion.h"
 #include "physics/fresnel.h"
 #include "physics/mirror.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/lobes.h"
 
 namespace relook {
@@ -191,15 +192,16 @@ Branch branch_of(Lobe lobe) {
 }
 
 /// The ray of a lobe that has been chosen, from a hit that scatters.
-void add_lobe_ray(Spawner& spawner, const RayNode& node, const VertexLobes& lobes, const SpawnRule& rule,
-                  float fresnel) {
+void add_lobe_ray(Spawner& spawner, const RayNode& node, const RayObject& object, const VertexLobes& lobes,
+                  const SpawnRule& rule, float fresnel) {
   const PathState& from = node.ray.path;
   const auto sample = sample_lobe(lobes, node.point.geometric, sample_point(from.key, from.history, Purpose::lobe));
   if (!sample) return;
   const bool is_diffuse = sample->lobe == Lobe::diffuse;
   // Behind the last vertex, too, a ray gathers what shines where it ends.
   spawner.set_may_spawn(true);
-  SpawnedRay* ray = spawner.add(branch_of(sample->lobe), sample->way, 1.0F, fresnel);
+  const float counted = sample->lobe == Lobe::specular ? fresnel : 1.0F;
+  SpawnedRay* ray = spawner.add(branch_of(sample->lobe), sample->way, 1.0F, counted);
   if (ray == nullptr) return;
   PathState& path = ray->path;
   path.from = node.object;
@@ -207,7 +209,8 @@ void add_lobe_ray(Spawner& spawner, const RayNode& node, const VertexLobes& lobe
   path.is_first = from.from.is_none();
   path.is_eye = false;
   path.is_shut = false;
-  path.is_wide = lobes.is_wide(sample->lobe);
+  path.is_alone = !is_lit(object, node) || !(node.point.shading.dot(sample->way) > 0);
+  path.is_wide = lobes.is_wide(sample->lobe) && !path.is_alone;
   const AlphaBucket bucket = sample->lobe == Lobe::coat ? lobes.coat_bucket : lobes.specular_bucket;
   path.alpha_floor =
       std::fmax(from.alpha_floor, is_diffuse ? kAlphaFloorBehindDiffuse : alpha_floor_behind(bucket));
@@ -251,7 +254,7 @@ Spawned spawn_path(const RayNode& node, const RayObject& object, const SpawnRule
   if (gathers) return spawner.result();
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
   if (!lobes.any()) return spawner.result();
-  add_lobe_ray(spawner, node, lobes, rule, optics.refracts ? interface.factor(interface.reflectance()) : 1.0F);
+  add_lobe_ray(spawner, node, object, lobes, rule, optics.refracts ? interface.factor(interface.reflectance()) : 1.0F);
   spawner.result().lobes = lobes;
   return spawner.result();
 }
