@@ -79,7 +79,7 @@ MaterialLobes material_lobes(const Material& material) {
   const bool lets_all_through = material.transmission >= 1 && !is_textured(Slot::transmission);
   const bool is_cloth = material.sheen_color != Color(0, 0, 0);
   return {.diffuse = (!is_metal && !lets_all_through) || is_cloth,
-          .specular = material.specular > 0 || material.metallic > 0,
+          .specular = material.specular > 0 || material.metallic > 0 || material.iridescence > 0,
           .coat = material.clearcoat > 0};
 }
 

@@ -42,10 +42,12 @@ class UserLists {
   std::map<std::size_t, std::shared_ptr<std::vector<ObjectId>>> changed_;  // by MaterialId
 };
 
-/// The objects that emit with a material, in the order of their keys.
-std::vector<EmissionSource::Placed> emitting_objects(const SharedTable<RayObject>& objects,
+/// The objects that are sampled for the light of an emitting material, in the order of their keys. None where less than
+/// all of it gets out, through holes, coverage or a coat: rays that meet them then bring it alone.
+std::vector<EmissionSource::Placed> emitting_objects(const SharedTable<RayObject>& objects, const Material& material,
                                                      const std::vector<ObjectId>& users) {
   std::vector<EmissionSource::Placed> placed;
+  if (material.alpha_mode != AlphaMode::opaque || material.clearcoat > 0) return placed;
   for (const ObjectId id : users)
     if (objects[id.index()].alive) placed.push_back({id, objects.share(id.index())});
   std::ranges::sort(placed, {}, [](const EmissionSource::Placed& one) { return one.object->key; });
@@ -102,7 +104,7 @@ void RayScene::apply_to_lights(Tables& tables, const Scene& scene) {
     if (light.kind == LightKind::suns) ray_light.environment = now.environment;
     if (light.kind == LightKind::emission) {
       std::vector<EmissionSource::Placed> objects =
-          emitting_objects(tables.objects, tables.users[light.material.index()]);
+          emitting_objects(tables.objects, scene.material(light.material), tables.users[light.material.index()]);
       const auto known = std::ranges::find(before.order, now.order[place]);
       const EmissionSource* source =
           known != before.order.end() ? before.placed[static_cast<std::size_t>(known - before.order.begin())].emission.get()

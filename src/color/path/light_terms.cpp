@@ -5,6 +5,7 @@
 
 #include "color/expression/field.h"
 #include "physics/power_heuristic.h"
+#include "trace/light/emission_source.h"
 #include "trace/light/light_sample.h"
 
 namespace relook {
@@ -95,9 +96,10 @@ float met_weight(const RayNode& node, const RayLight& light, float density) {
   return weight_of(path.density, density * (path.is_first ? 1.0F : light.rate));
 }
 
-bool may_meet(const RayNode& node, const Light& light) {
+bool may_meet(const RayNode& node, const RayLight& ray_light, const Light& light) {
   const PathState& path = node.ray.path;
-  if (path.is_shut) return false;
+  const bool has_samples = !ray_light.emission || !ray_light.emission->empty();
+  if (path.is_shut && has_samples) return false;
   if (path.is_eye) return light.visible || !traits_of(light.kind).in_document;
   return path.from.is_none() || !light.excludes(path.from);
 }

@@ -19,7 +19,7 @@ namespace relook {
 /// those have the ray's direction.
 [[nodiscard]] float met_weight(const RayNode& node, const RayLight& light, float density);
 /// May the ray to a node bring light of a light with a size at all?
-[[nodiscard]] bool may_meet(const RayNode& node, const Light& light);
+[[nodiscard]] bool may_meet(const RayNode& node, const RayLight& ray_light, const Light& light);
 /// The radiance of a light with a shape where the ray to a node crosses it before its end, weighted; none: it does not.
 [[nodiscard]] std::optional<float> crossed(const RayNode& node, const RayLight& ray_light, const Light& light);
 

@@ -193,7 +193,7 @@ struct PathShader::Impl {
   void add_crossed(const RayNode& node, std::uint32_t i, std::uint32_t place) {
     const std::uint32_t sum = places.of_light[place];
     const Light& light = scene.scene().light(scene.light_order()[place]);
-    if (!is_wanted(sum, node) || !may_meet(node, light)) return;
+    if (!is_wanted(sum, node) || !may_meet(node, scene.light(place), light)) return;
     if (const auto radiance = crossed(node, scene.light(place), light)) put(sum, node, weights[i] * *radiance);
   }
 
@@ -211,7 +211,7 @@ struct PathShader::Impl {
     const EnvironmentLight::Parts parts = scene.environment()->parts(way);
     if (is_wanted(places.sky, node)) put(places.sky, node, weights[i] * parts.sky);
     if (is_black(parts.suns) || !is_wanted(sun_sum, node)) return;
-    if (!may_meet(node, scene.scene().light(scene.light_order()[suns]))) return;
+    if (!may_meet(node, light, scene.scene().light(scene.light_order()[suns]))) return;
     const float weight = path.density > 0 ? met_weight(node, light, scene.environment()->density(way)) : 1.0F;
     put(sun_sum, node, weights[i] * parts.suns * weight);
   }
@@ -233,9 +233,9 @@ struct PathShader::Impl {
     const std::uint32_t place = emission_of[scene.scene().object(node.object).material.index()];
     if (place == kNoNode || !is_wanted(places.of_light[place], node)) return;
     const Light& light = scene.scene().light(scene.light_order()[place]);
-    if (!may_meet(node, light)) return;
-    const PathState& path = node.ray.path;
     const RayLight& source = scene.light(place);
+    if (!may_meet(node, source, light)) return;
+    const PathState& path = node.ray.path;
     float weight = 1;
     if (path.density > 0)
       weight = met_weight(node, source, source.emission->density(node.object, node.hit.primitive, node.ray.origin,

@@ -45,7 +45,7 @@ class LayeredSurface {
         entered_(reflectance_.entered(reflectance_.dielectric(weight_at(interface_cosine()), nv_))) {
     if (is_interface_) return;
     if (t_.builder().shape(Field::sheen_color).sheen) add_sheen();
-    if (t_.builder().shape(Field::clearcoat).clearcoat) add_coat();
+    if (!is_inside_ && t_.builder().shape(Field::clearcoat).clearcoat) add_coat();
   }
 
   /// `direction`: of the light.

@@ -31,6 +31,8 @@ class EmissionSource {
   /// With which sample() gives the point that a ray meets; 0 for objects that it does not know.
   [[nodiscard]] float density(ObjectId object, std::uint32_t primitive, const Point& from, const Direction& way,
                               float distance) const;
+  /// Is it never sampled?
+  [[nodiscard]] bool empty() const { return light_.empty(); }
   /// Is it made of these?
   [[nodiscard]] bool is_of(const TextureSlot& image, std::span<const Placed> objects) const;
 
