@@ -1,6 +1,8 @@
 #include "input/load_scene.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -70,8 +72,21 @@ void warn_of_choice(LoadedDocument& loaded, const Camera& camera) {
 bool is_lit(const Scene& scene) {
   const Color black(0, 0, 0);
   const Environment& environment = scene.environment;
-  return !scene.lights.empty() || scene.ambient != black ||
+  const auto shines = [&](LightId id) { return scene.light(id).kind != LightKind::suns; };
+  return std::ranges::any_of(scene.light_order, shines) || scene.ambient != black ||
          (environment.intensity > 0 && (environment.color != black || environment.image != nullptr));
+}
+
+/// What of an environment that lights is left out, as resampling makes it.
+void warn_of_negative_light(LoadedScene& loaded) {
+  const Scene& scene = loaded.state->scene();
+  if (scene.integrator != Integrator::path || !scene.environment.image) return;
+  const float share = scene.environment.image->negative_share;
+  if (!(share > 0.0005F)) return;
+  std::array<char, 16> percent{};
+  std::snprintf(percent.data(), percent.size(), "%.1f", static_cast<double>(share) * 100);
+  loaded.warnings.push_back(std::string("the environment's image has negative texels, ") + percent.data() +
+                            " % of its light: they count as 0");
 }
 
 }  // namespace
@@ -119,6 +134,7 @@ LoadedScene load_scene(const std::string& path, const ViewArguments& view) {
                                              view.sampling.integrator);
   if (!is_lit(scene.state->scene()))
     throw InputError(path, "", "the scene has no light: add some with --lights auto or --look PATCH.json");
+  warn_of_negative_light(scene);
   return scene;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "base/error.h"
 #include "base/import_memory.h"
@@ -210,13 +211,25 @@ std::vector<float> texels_of_16_bit(OpenImage& image, bool color) {
   });
 }
 
-std::vector<float> float_texels(OpenImage& image) {
-  return image.texels<float, float>(TexelType::real, 1.0F, [](const auto& rows, auto& values) {
-    const std::size_t first = values.size();
-    values.resize(first + rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      values[first + i] = std::isfinite(rows[i]) ? std::clamp(rows[i], 0.0F, kLargestTexel) : 0.0F;
-  });
+/// The values of an image, at least 0. `negative_share`: of the light of a lat-long image, what was below.
+std::vector<float> float_texels(OpenImage& image, float& negative_share) {
+  const ImageHeader header = image.header();
+  const std::size_t row_values = std::size_t{header.width} * 4;
+  double negative = 0, positive = 0;
+  std::vector<float> texels =
+      image.texels<float, float>(TexelType::real, 1.0F, [&](const auto& rows, auto& values) {
+        const std::size_t first = values.size();
+        values.resize(first + rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+          values[first + i] = std::isfinite(rows[i]) ? std::clamp(rows[i], 0.0F, kLargestTexel) : 0.0F;
+          if (i % 4 == 3 || !std::isfinite(rows[i])) continue;  // coverage
+          const double row = static_cast<double>((first + i) / row_values) + 0.5;
+          const double solid_angle = std::sin(std::numbers::pi * row / header.height);
+          (rows[i] < 0 ? negative : positive) += std::fabs(static_cast<double>(rows[i])) * solid_angle;
+        }
+      });
+  negative_share = negative > 0 ? static_cast<float>(negative / (negative + positive)) : 0.0F;
+  return texels;
 }
 
 TexturePyramid pyramid_of(OpenImage& image, bool color) {
@@ -224,8 +237,11 @@ TexturePyramid pyramid_of(OpenImage& image, bool color) {
   if (!header.is_float)
     return build_pyramid(color ? TexelFormat::srgb8 : TexelFormat::linear8, header.width, header.height,
                          byte_texels(image));
-  return build_pyramid(header.width, header.height,
-                       image.is_16_bit() ? texels_of_16_bit(image, color) : float_texels(image));
+  if (image.is_16_bit()) return build_pyramid(header.width, header.height, texels_of_16_bit(image, color));
+  float negative_share = 0;
+  TexturePyramid pyramid = build_pyramid(header.width, header.height, float_texels(image, negative_share));
+  pyramid.negative_share = negative_share;
+  return pyramid;
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ struct TexturePyramid {
   std::vector<std::uint8_t> texels8;  // srgb8, linear8: 4 per texel
   std::vector<float> texels32;        // float32: 4 per texel
   Rgba smallest, largest;             // over level 0, linear: what a parameter times this texture can reach
+  float negative_share = 0;           // of a float image's light, values below 0 that decoding has made 0
 };
 
 enum class Wrap : std::uint8_t { repeat, clamp, mirror };
