@@ -77,6 +77,10 @@ bool turns_lobes(const Material& before, const Material& after, std::span<const 
            is_black(before.phong_diffuse) != is_black(after.phong_diffuse) ||
            is_black(before.phong_specular) != is_black(after.phong_specular);
   if (!has_same_lobes(before, after) || before.ior != after.ior) return true;
+  if (before.anisotropy != after.anisotropy ||
+      (after.anisotropy > 0 && (before.anisotropy_rotation != after.anisotropy_rotation ||
+                                before.slot(Slot::anisotropy) != after.slot(Slot::anisotropy))))
+    return true;
   const bool same_texture = before.slot(Slot::metallic_roughness) == after.slot(Slot::metallic_roughness);
   if (differs(metal_buckets(before), metal_buckets(after), same_texture && before.metallic == after.metallic))
     return true;

@@ -23,7 +23,7 @@ const std::vector<Crossing>& ObjectRays::filters(std::span<const std::uint32_t> 
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (std::ranges::count(objects.first(i), objects[i]) > 0) continue;
     ++counters_.object_rays;
-    const Ray ray{segment.origin, segment.direction, segment.t_max};
+    const Ray ray = segment.ray();
     if (!Tracer::passes(objects_->of(ObjectId(objects[i])), ray, of_object_)) refuse_trees();
     crossings_.insert(crossings_.end(), of_object_.begin(), of_object_.end());
   }

@@ -109,7 +109,8 @@ void collect_crossings(const RTCFilterFunctionNArguments* args) {
   auto& query = *reinterpret_cast<Query*>(args->context);
   const Tracer::Placed& placed = (*query.placed)[RTCHitN_instID(args->hit, 1, 0, 0)];
   const Hit hit{RTCHitN_primID(args->hit, 1, 0), RTCHitN_u(args->hit, 1, 0), RTCHitN_v(args->hit, 1, 0)};
-  if (placed.object == nullptr || !is_met(*placed.object, hit, -query.ray->direction)) {
+  const Direction way = query.ray->from_light ? -query.ray->direction : query.ray->direction;
+  if (placed.object == nullptr || !is_met(*placed.object, hit, way)) {
     args->valid[0] = 0;
     return;
   }

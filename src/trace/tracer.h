@@ -34,6 +34,7 @@ struct Ray {
   float t_max = std::numeric_limits<float>::infinity();
   float t_min = 0;
   Meeting behind{};  // object not none: a hit of this ray; only what comes after it is met
+  bool from_light = true;  // of a segment: single-sided surfaces are met where they face the light, else the segment
 };
 
 /// A surface that a shadow segment crosses.
@@ -104,7 +105,7 @@ class Tracer {
   [[nodiscard]] static float distance(const TopLevel& level, const Ray& ray, std::uint32_t primitive);
 
   /// Segments run from a point to a light, against the light's own way: single-sided surfaces are met where they face
-  /// the light. False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent
+  /// the light, or, towards the sample of a light that rays meet as well, where such a ray meets them. False if an opaque object blocks the segment; otherwise true, and `crossings` holds the transparent
   /// surfaces in order. `crossings` is cleared first.
   [[nodiscard]] static bool passes(const TopLevel& level, const Ray& ray, std::vector<Crossing>& crossings);
 

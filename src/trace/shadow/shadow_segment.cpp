@@ -41,6 +41,7 @@ ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
   if (!target) return segment;
   const Direction& to_light = target->way;
   segment.faces = point.shading.dot(to_light) > 0;
+  segment.is_soft = light.is_soft();
   // A light near the horizon of the triangle is judged from the smooth surface.
   constexpr float kHorizon = 0.1F;  // cosine
   const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));

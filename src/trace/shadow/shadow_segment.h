@@ -13,6 +13,13 @@ struct ShadowSegment {
   Point origin{0, 0, 0};
   Direction direction{0, 0, 1};
   float t_max = 1;
+  bool is_soft = false;  // to a light that rays may meet
+
+  [[nodiscard]] Ray ray() const {
+    Ray ray{origin, direction, t_max};
+    ray.from_light = !is_soft;
+    return ray;
+  }
 };
 [[nodiscard]] ShadowSegment shadow_segment(const RayNode& node, const RayLight& light);
 /// False where no light is gathered and no segments are kept: the inner side of a volume, and where rays only gather.

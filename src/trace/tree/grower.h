@@ -110,7 +110,7 @@ class Grower {
   /// Traces one shadow segment against the whole scene.
   void trace_light(std::uint32_t index, std::size_t light, const ShadowSegment& segment, GrowCounters& counters) {
     ++counters.shadow_updates;
-    const Ray ray{segment.origin, segment.direction, segment.t_max};
+    const Ray ray = segment.ray();
     if (g_.shadow_bits > 0) {
       Tracer::blockers(*g_.level, ray, crossings_);
       if (std::ranges::any_of(crossings_, [&](const Crossing& c) { return !passes_light(c); })) {

@@ -1,5 +1,6 @@
 #include "trace/tree/lobes.h"
 
+#include "physics/brushed_ggx.h"
 #include "physics/fresnel.h"
 #include "physics/ggx.h"
 #include "trace/tree/tree_block.h"
@@ -13,6 +14,28 @@ float textured(const RayNode& node, const RayObject& object, float factor, Slot 
   if (texture.kind == TextureKind::none) return factor;
   return factor *
          texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint)[channel];
+}
+
+/// The direction of a brush, and how much wider the lobe is along it. Zero where the mesh gives none.
+struct Brush {
+  Direction along{0, 0, 0};
+  float strength = 0;
+};
+Brush brush_at(const RayNode& node, const RayObject& object) {
+  const Material& material = *object.material;
+  if (material.anisotropy == 0) return {};
+  const TextureSlot& texture = material.slot(Slot::anisotropy);
+  const TangentFrame frame = tangent_frame(object, node.hit, node.point, texture);
+  const float turns = material.anisotropy_rotation * 0.15915494F;
+  const float cosine = portable_cos_turns(turns), sine = portable_sin_turns(turns);
+  if (texture.kind == TextureKind::none)
+    return {brush_axes(frame.tangent, frame.bitangent, cosine, sine).along, material.anisotropy};
+  const Rgba texel =
+      texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint);
+  const float u = texel.r * 2 - 1, v = texel.g * 2 - 1, scale = 1 / std::sqrt(std::fmax(u * u + v * v, 1e-30F));
+  return {brush_axes(frame.tangent, frame.bitangent, (cosine * u - sine * v) * scale, (sine * u + cosine * v) * scale)
+              .along,
+          material.anisotropy * texel.b};
 }
 
 /// The bucket of a roughness and its lobe.
@@ -46,9 +69,17 @@ VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal&
     set_glossy(textured(node, object, material.clearcoat_roughness, Slot::clearcoat_roughness, 1), floor,
                lobes.coat_bucket, lobes.coat);
   }
-  if (set.specular)
-    set_glossy(textured(node, object, material.roughness, Slot::metallic_roughness, 1), floor, lobes.specular_bucket,
-               lobes.specular);
+  if (set.specular) {
+    const float roughness = textured(node, object, material.roughness, Slot::metallic_roughness, 1);
+    set_glossy(roughness, floor, lobes.specular_bucket, lobes.specular);
+    const Brush brush = brush_at(node, object);
+    if (brush.along.dot(brush.along) > 0) {
+      const float along = widened(alpha_of(floored(roughness, floor)), brush.strength * brush.strength);
+      lobes.specular.alpha_x = bucket_of_alpha(along).representative();
+      lobes.base = basis_along(normal, brush.along);
+      lobes.view = lobes.base.to_local(view);
+    }
+  }
   const MetallicBucket metallic = bucket_of_metallic(textured(node, object, material.metallic, Slot::metallic_roughness, 2));
   const float ior = std::fmax(material.ior, 1.0F);
   const float reflectance = dielectric_reflectance(cosine, node.point.inside && object.optics.bent ? 1 / ior : ior);

@@ -61,7 +61,7 @@ class Prober {
       if (state == ShadowState::facing_away) continue;
       const bool touched = touch.touches(state == ShadowState::blocked, light);
       const ShadowSegment segment = shadow_segment(node, g_.scene.light(light));
-      const Ray ray{segment.origin, segment.direction, segment.t_max};
+      const Ray ray = segment.ray();
       const auto tests = tests_.tests_shadow(state, touched, ray);
       if (tests.before && crosses(change_.shadows_before, ray)) return true;
       if (tests.after && crosses(change_.shadows_after, ray)) return true;

@@ -228,29 +228,34 @@ void add_mirror_ray(Spawner& spawner, const RayNode& node, const Normal& normal)
   ray->path.is_eye = ray->path.is_shut = ray->path.is_wide = false;
 }
 
-/// A ray through the surface: where it is bent, no sample of a light can stand for its direction.
+/// A ray through a surface that bends rays: a segment through it counts as bent, whichever way this one goes.
 void note_refraction(SpawnedRay* ray) {
-  if (ray == nullptr || ray->goes_on()) return;
+  if (ray == nullptr) return;
   PathState& path = ray->path;
   path.is_shut = path.is_shut || path.is_wide;
-  path.is_wide = path.is_eye = false;
+  path.is_wide = false;
   path.density = 0;
+  if (!ray->goes_on()) path.is_eye = false;
 }
 
 /// One lobe is followed, and, beside it, what goes through the surface.
 Spawned spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
   const SurfaceOptics& optics = object.optics;
   const bool gathers = node.ray.path.gathers;
-  // What stands behind what lets rays through is gathered, too.
+  // What stands behind what lets rays through is gathered, too, as far as samples of lights see through it.
   constexpr std::uint32_t kMostBehind = 8;
-  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers ? kMostBehind : 0));
+  const bool is_scattered = node.ray.path.density > 0;
+  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers || is_scattered ? kMostBehind : 0));
   const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
   if (gathers && !optics.refracts && !optics.transparent) return spawner.result();
   const Interface interface(node, object);
   if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
-  interface.refract(spawner, false, note_refraction);
-  if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
-  interface.refract(spawner, true, note_refraction);
+  const auto bent = [&](SpawnedRay* ray) {
+    if (optics.bent) note_refraction(ray);
+  };
+  interface.refract(spawner, false, bent);
+  if (optics.transparent) bent(spawner.add_straight(Branch::transparency, 1.0F));
+  interface.refract(spawner, true, bent);
   if (gathers) return spawner.result();
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
   if (!lobes.any()) return spawner.result();

@@ -154,7 +154,7 @@ class Updater {
       grower_.trace_light(l.index, l.light, l.segment, counters_);
       return;
     }
-    const Ray ray{l.segment.origin, l.segment.direction, l.segment.t_max};
+    const Ray ray = l.segment.ray();
     const auto tests = tests_.tests_shadow(l.before, touched, ray);
     if (!tests.any())  // transparent surfaces of the selection may have stood there: the path names them
       l.before == ShadowState::filtered ? update_filters(l, {}) : keep(l);
