@@ -92,7 +92,7 @@ def _cloths(gltf, textures):
                                          extensions=_sheen([0.20, 0.19, 0.17], 0.4)),
             "Cloth": gltf.add_material("Cloth", (0.022, 0.075, 0.092), 0.0, 0.85, normalTexture=weave(0.7),
                                        extensions=_sheen([0.12, 0.20, 0.22], 0.4)),
-            "Sweep": gltf.add_material("Sweep", (0.34, 0.285, 0.235), 0.0, 0.6, doubleSided=True)}
+            "Sweep": gltf.add_material("Sweep", (0.26, 0.215, 0.175), 0.0, 0.6, doubleSided=True)}
 
 
 def _facing(yaw, tilt):
