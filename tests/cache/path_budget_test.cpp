@@ -83,8 +83,8 @@ INSTANTIATE_TEST_SUITE_P(Shares, PathBudget,
                                          PathBudgetCase{"no_trees_kept", 1, false, 0},
                                          PathBudgetCase{"some_trees_kept_of_a_cache", 1, false, 0.5, true},
                                          PathBudgetCase{"few_trees_on_disk", 0.4, true, 0.4}),
-                         [](const testing::TestParamInfo<PathBudgetCase>& info) {
-                           return std::string(info.param.name);
+                         [](const testing::TestParamInfo<PathBudgetCase>& budget) {
+                           return std::string(budget.param.name);
                          });
 
 TEST(PathCache, of_an_edited_document_goes_on_as_the_replay_does) {

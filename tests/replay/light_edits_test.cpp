@@ -203,8 +203,8 @@ INSTANTIATE_TEST_SUITE_P(Path, LightEdits,
                                          LightRows{"order", order_rows, 1}, LightRows{"order", order_rows, 4},
                                          LightRows{"sky", sky_rows, 1}, LightRows{"sky", sky_rows, 4},
                                          LightRows{"emission", emission_rows, 2}),
-                         [](const testing::TestParamInfo<LightRows>& info) {
-                           return std::string(info.param.name) + "_" + std::to_string(info.param.samples);
+                         [](const testing::TestParamInfo<LightRows>& rows) {
+                           return std::string(rows.param.name) + "_" + std::to_string(rows.param.samples);
                          });
 
 TEST(LightEdit, of_colours_alone_looks_at_no_sample) {

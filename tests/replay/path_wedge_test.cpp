@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wedge{"bumps", "Coated/normalTexture/scale", {0, 0.2, 0.6, 1, 1.8}},
         Wedge{"shininess", "Phong/extras/relook/shininess", {1, 3, 8, 20, 60, 300}},
         Wedge{"reflection", "Phong/extras/relook/reflection", {0, 0.01, 0.3, 0.7, 1}}),
-    [](const testing::TestParamInfo<Wedge>& info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Wedge>& wedge) { return std::string(wedge.param.name); });
 
 TEST(PathLobes, come_and_go_with_other_edits) {
   const std::string sheen = "/materials/Cloth/extensions/KHR_materials_sheen/sheenColorFactor";
