@@ -61,13 +61,15 @@ class PathUpdate {
     const ColorScene before(change_.rays_before, *change_.scene_before);
     const TilePrograms programs_before(before), programs_after(parts_.rays);
     const Tracer::TopLevel* level = nullptr;
-    if (change_.step.touches_rays() || misses_hits()) {
+    if (change_.step.touches_rays() || may_trace_tiles()) {
       level = &parts_.current_level({});
       parts_.residency.require_floor();
       build_selection(change_.step, parts_.rays, {}, parts_.level->tracer());
+      const ChangeBoxes boxes = boxes_of(change_.step, parts_.rays);
+      change_.step.rays.bounds = {boxes.moved.all, boxes.shadows_before.all, boxes.shadows_after.all, boxes.condition};
     }
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
-    const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0);
+    const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
     PathPass pass{change_, stored_.image(), programs_before, programs_after, grow_before, grow_after, {}, {}};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     std::vector<PathTileResult> results(stored_.image().trees.size());
@@ -81,12 +83,9 @@ class PathUpdate {
   }
 
  private:
-  [[nodiscard]] bool misses_hits() const {
-    for (std::size_t tile = 0; tile < stored_.image().trees.size(); ++tile) {
-      const auto lease = parts_.residency.use(PieceKind::ray_trees, tile);
-      if (stored_.misses_hits(tile)) return true;
-    }
-    return false;
+  /// Tiles whose hits are gone, or go under a limit, are traced as a whole.
+  [[nodiscard]] bool may_trace_tiles() const {
+    return parts_.residency.is_limited() || !std::ranges::all_of(stored_.image().trees, has_hits);
   }
 
   void update(const PathPass& pass, std::size_t tile, PathTileResult& result) {
@@ -123,6 +122,7 @@ StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file
   const SceneDelta delta = apply_edit(parts.state, edit, file, folder);
   const Scene& scene = parts.state.scene();
   result.classification = classify(scene, delta);
+  if (parts.stored.regions().options().atoms > 0) parts.stored.extend_atoms(parts.atoms());
   result.counters.samples_total = parts.stored.samples();
   parts.rays = ColorScene(rays_before.after(scene, delta), scene);
   PathChange change = find_path_change(rays_before, parts.stored.lights(), scene, parts.rays, delta);
