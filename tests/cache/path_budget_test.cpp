@@ -37,7 +37,7 @@ ResidencyOptions limited(const PathBudgetCase& c, const Resident& all) {
   if (c.has_disk) options.spill_folder = testing::TempDir();
   if (c.memory < 1)
     options.memory_bytes = c.has_disk ? share_of(c.memory, all.ray_trees + all.light_sums)
-                                      : 2 * all.light_sums + share_of(c.memory, all.ray_trees);
+                                      : all.light_sums + all.light_sums / 4 + share_of(c.memory, all.ray_trees);
   return options;
 }
 

@@ -122,11 +122,11 @@ PathReference::Surface PathReference::surface_at(const Found& found, const Vec& 
   return s;
 }
 
-Vec PathReference::passed(const Vec& from, const Vec& way, double distance) const {
+Vec PathReference::passed(const Vec& from, const Vec& way, double distance, bool is_sized) const {
   std::vector<Found> crossings;
   for (const WorldTriangle& triangle : triangles_) {
     const LineHit hit = intersect(triangle, from, way);
-    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, -way))  // the light comes the other way
+    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, is_sized ? way : -way))
       crossings.push_back({&triangle, hit.t, hit.u, hit.v});
   }
   std::ranges::sort(crossings, {}, &Found::t);
@@ -224,7 +224,7 @@ Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind
   const Vec light_there = value * arriving;
   if (is_black(light_there)) return kBlack;
   const Vec origin = s.p + s.lift * std::clamp(1 - s.ng.dot(way) / 0.1, 0.0, 1.0) + s.ng * kOffset;
-  return light_there * passed(origin, way, distance);
+  return light_there * passed(origin, way, distance, is_sized);
 }
 
 Vec PathReference::gathered(const Surface& s, const Ray& ray, Random& random) const {

@@ -45,7 +45,8 @@ class PathReference {
   [[nodiscard]] Found nearest(const Vec& origin, const Vec& way) const;
   [[nodiscard]] Surface surface_at(const Found& found, const Vec& way, double floor) const;
   /// What the straight way to a light lets through.
-  [[nodiscard]] Vec passed(const Vec& from, const Vec& way, double distance) const;
+  /// `is_sized`: single-sided surfaces are met as a ray meets them, else as the light of a lamp does.
+  [[nodiscard]] Vec passed(const Vec& from, const Vec& way, double distance, bool is_sized) const;
 
   [[nodiscard]] Vec radiance(const Ray& ray, Random& random) const;
   [[nodiscard]] Vec surroundings(const Ray& ray) const;

@@ -91,13 +91,16 @@ TEST(OwnScenes, journals_of_product_are_exact) {
                                          .view = {"--integrator", "path", "--samples", "2"}},
                                         run);
     ASSERT_TRUE(report.contains("steps"));
+    Json last = 0;  // step: behind the frames of a wedge there is one for where it stays
     for (const Json& step : report["steps"]) {
       SCOPED_TRACE(step["name"].get<std::string>());
       EXPECT_EQ(step["verify"]["pixels_different"], 0);
       EXPECT_GT(step["verify"]["pixels_compared"], 0);
-      if (step["step"] != 0) {
+      const bool stays = step["step"] == last && step["wedge_frame"].is_null();
+      if (!stays) {
         EXPECT_GT(step["pixels_changed"], 0);
       }
+      last = step["step"];
     }
   }
 }

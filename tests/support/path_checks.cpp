@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <sstream>
 #include <utility>
 
@@ -16,7 +15,6 @@
 namespace relook {
 namespace {
 
-bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
 
 std::string text_of(const Rgba& value) {
   std::ostringstream text;

@@ -48,11 +48,11 @@ Rgba even_sky_texel(std::uint32_t, std::uint32_t y) {
 }
 
 struct Textures {
-  int picture, veil, bumps, rough, sky;
+  int picture, veil, bumps, rough;
 };
 Textures add_textures(SceneBuilder& scene) {
   Textures textures{};
-  textures.sky = scene.image("SkyImage", single_level_image(16, sky_texel));
+  scene.image("SkyImage", single_level_image(16, sky_texel));
   scene.image("SecondSkyImage", single_level_image(16, second_sky_texel));
   scene.image("EvenSkyImage", single_level_image(16, even_sky_texel));
   textures.picture = scene.texture("Picture", scene.image("PictureImage", single_level_image(16, picture_texel)));
@@ -183,7 +183,7 @@ SceneState lights_scene(std::uint32_t width, std::uint32_t height) {
   add_roles(scene, textures);
   add_surfaces(scene, textures);
   add_lights(scene);
-  scene.environment({{"image", textures.sky},
+  scene.environment({{"image", "SkyImage"},
                      {"color", {1, 1, 1}},
                      {"intensity", 0.8},
                      {"rotation", 0.4},
