@@ -121,8 +121,9 @@ void compress_tile(const UpdatePass& pass, ReplayParts& parts, std::size_t tile,
   TileColorTrees& trees = kept.tiles[tile];
   parts.color_trees.keep(trees, compressor.compress(leaves));
   outcome.grown += compressor.counters();
-  if (std::exchange((*kept.were_built)[tile], std::uint8_t{1}) != 0)
-    outcome.rebuilt = {0, 0, trees.samples.size(), 0, trees.bytes};
+  if (std::exchange((*kept.were_built)[tile], std::uint8_t{1}) == 0) return;
+  outcome.rebuilt.color_trees = trees.samples.size();
+  outcome.rebuilt.bytes = trees.bytes;
 }
 
 void count_outcomes(const std::vector<Outcome>& outcomes, std::span<const std::size_t> tiles, StepResult& result) {
@@ -210,7 +211,8 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
     outcome.samples = trees.samples.size();
     result.dependent[tile] = trees.leaves;
     if (room.take(outcome.samples) && parts_.residency.make_room(0)) return;
-    outcome.evicted = {0, 0, outcome.samples, 0, trees.bytes};
+    outcome.evicted.color_trees = outcome.samples;
+    outcome.evicted.bytes = trees.bytes;
     parts_.color_trees.drop(trees);  // at once, so that what cannot be kept does not pile up
   });
   count_outcomes(outcomes, tiles, result);
