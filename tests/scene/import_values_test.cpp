@@ -128,6 +128,7 @@ TEST_F(ImportValues, a_value_far_beyond_is_refused_where_it_is_used_and_ignored_
       if (std::abs(field.low) < kCeiling) beyond.push_back(field.low - 1.5);
       for (const double value : beyond) {
         if (field.key == "emissiveFactor" && value > 1) continue;  // split, see below
+        if (field.key == "size" || field.key == "aspect") continue;  // of EXT_lights_area: area_lights_test.cpp
         SceneFile file = with_unused();
         set_number(file, home.used, number, value);
         EXPECT_NE(answer(file).error.find(": " + home.used + number.pointer), std::string::npos)
