@@ -86,25 +86,25 @@ bool PathChange::touches_samples() const {
   return step.touches_rays() || any_afresh() || !shaded.empty() || !step.colors.reassigned.empty();
 }
 
-PathChange find_path_change(const RayScene& rays_before, const std::vector<LightId>& lights_before, const Scene& scene,
-                            const RayScene& rays, const SceneDelta& delta) {
+PathChange find_path_change(const RayScene& rays_before, const std::vector<LightId>& lights_before,
+                            const std::vector<LightSum>& sums_before, const Scene& scene, const RayScene& rays,
+                            const SceneDelta& delta) {
   PathChange change(rays_before);
   change.step = find_change(rays_before, scene, delta, lights_before);
   change.sums = light_sums(scene);
-  change.scene_before = before_edit(scene, delta, lights_before);
   match_lights(rays_before, lights_before, rays, change.step.rays);
-  const std::vector<LightSum> before = light_sums(*change.scene_before);
   for (const LightSum& sum : change.sums) {
-    const auto old = std::ranges::find_if(before, [&](const LightSum& one) { return same_sum(one, sum); });
-    const bool is_known = old != before.end();
-    change.old_of_new.push_back(is_known ? static_cast<std::uint32_t>(old - before.begin()) : kNewSum);
+    const auto old = std::ranges::find_if(sums_before, [&](const LightSum& one) { return same_sum(one, sum); });
+    const bool is_known = old != sums_before.end();
+    change.old_of_new.push_back(is_known ? static_cast<std::uint32_t>(old - sums_before.begin()) : kNewSum);
     change.recolored = change.recolored || !is_known || old->color != sum.color;
   }
-  change.recolored = change.recolored || before.size() != change.sums.size();
+  change.recolored = change.recolored || sums_before.size() != change.sums.size();
   change.afresh.assign(change.sums.size(), 0);
   find_afresh(scene, delta, change);
   for (const auto& [material, fields] : change.step.colors.parameters.materials)
     if ((fields & ~kEmissionMask) != 0) change.shaded.push_back(material);
+  if (change.touches_samples()) change.scene_before = before_edit(scene, delta, lights_before);
   return change;
 }
 

@@ -19,7 +19,7 @@ struct PathChange {
   std::vector<std::uint8_t> afresh;        // by sum: all its terms may be others; they follow from the trees
   bool recolored = false;                  // a sum's colour is another one, or sums have come or gone
   std::vector<MaterialId> shaded;          // materials whose users' terms change
-  std::shared_ptr<const Scene> scene_before;
+  std::shared_ptr<const Scene> scene_before;  // where samples are touched; else null
   RayScene rays_before;
 
   [[nodiscard]] bool any_afresh() const;
@@ -27,8 +27,9 @@ struct PathChange {
   [[nodiscard]] bool touches_samples() const;
 };
 
-/// `rays_before`, `lights_before`: as before the edit; `scene`, `rays`: as after it.
+/// `rays_before`, `lights_before`, `sums_before`: as before the edit; `scene`, `rays`: as after it.
 [[nodiscard]] PathChange find_path_change(const RayScene& rays_before, const std::vector<LightId>& lights_before,
-                                          const Scene& scene, const RayScene& rays, const SceneDelta& delta);
+                                          const std::vector<LightSum>& sums_before, const Scene& scene,
+                                          const RayScene& rays, const SceneDelta& delta);
 
 }  // namespace relook

@@ -57,7 +57,8 @@ class PathUpdate {
  public:
   PathUpdate(ReplayParts& parts, PathChange& change) : parts_(parts), stored_(parts.stored), change_(change) {}
 
-  void run(StepResult& result) {
+  /// By tile: have its sums changed?
+  [[nodiscard]] std::vector<std::uint8_t> run(StepResult& result) {
     const ColorScene before(change_.rays_before, *change_.scene_before);
     const TilePrograms programs_before(before), programs_after(parts_.rays);
     const Tracer::TopLevel* level = nullptr;
@@ -75,11 +76,14 @@ class PathUpdate {
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
     std::vector<NewSamples> fresh;
+    std::vector<std::uint8_t> changed;
     for (PathTileResult& tile : results) {
+      changed.push_back(tile.has_changed ? 1 : 0);
       count(tile, result.counters);
       fresh.push_back(std::move(tile.fresh));
     }
     if (change_.step.touches_rays()) stored_.keep_paths(fresh, grow_after, change_.step.rays.lights_changed);
+    return changed;
   }
 
  private:
@@ -105,10 +109,14 @@ class PathUpdate {
   PathChange& change_;
 };
 
-void refresh_pixels(StoredImage& stored, std::span<const LightSum> sums, StepResult& result) {
+/// `tiles`: by tile, whether its pixels may be others.
+void refresh_pixels(StoredImage& stored, std::span<const std::uint8_t> tiles, std::span<const LightSum> sums,
+                    StepResult& result) {
   const std::vector<LightColor> colors = colors_of(sums);
   std::vector<TileMask> changed(stored.image().trees.size());
-  parallel_for(changed.size(), [&](std::size_t tile) { stored.refresh_from_sums(tile, colors, changed[tile]); });
+  parallel_for(changed.size(), [&](std::size_t tile) {
+    if (tiles[tile] != 0) stored.refresh_from_sums(tile, colors, changed[tile]);
+  });
   for (std::size_t tile = 0; tile < changed.size(); ++tile) result.changed_pixels.add(tile, changed[tile]);
 }
 
@@ -119,20 +127,23 @@ StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file
   StopWatch watch;
   parts.residency.begin_change();
   const RayScene rays_before = parts.rays;
+  const std::vector<LightSum> sums_before = light_sums(parts.state.scene());
   const SceneDelta delta = apply_edit(parts.state, edit, file, folder);
   const Scene& scene = parts.state.scene();
   result.classification = classify(scene, delta);
   if (parts.stored.regions().options().atoms > 0) parts.stored.extend_atoms(parts.atoms());
   result.counters.samples_total = parts.stored.samples();
   parts.rays = ColorScene(rays_before.after(scene, delta), scene);
-  PathChange change = find_path_change(rays_before, parts.stored.lights(), scene, parts.rays, delta);
+  PathChange change = find_path_change(rays_before, parts.stored.lights(), sums_before, scene, parts.rays, delta);
   const std::vector<ObjectId> changed = selection_of(change.step);
   if (parts.level) parts.level->note_changed(changed);
   parts.objects.go_on(parts.rays, changed);
   watch.lap(result.seconds.classify);
-  if (change.touches_samples()) PathUpdate(parts, change).run(result);
+  std::vector<std::uint8_t> tiles(parts.image().trees.size(), 0);
+  if (change.touches_samples()) tiles = PathUpdate(parts, change).run(result);
   watch.lap(change.step.touches_rays() ? result.seconds.update : result.seconds.evaluate);
-  if (change.touches_samples() || change.recolored) refresh_pixels(parts.stored, change.sums, result);
+  if (change.recolored) std::ranges::fill(tiles, std::uint8_t{1});
+  refresh_pixels(parts.stored, tiles, change.sums, result);
   watch.lap(result.seconds.evaluate);
   return result;
 }
