@@ -337,23 +337,24 @@ class Updater {
   }
 
   void update_children(std::uint32_t index, const PathNode& node, History history) {
-    const Spawned now = grower_.spawned(index);
+    Spawned now;
+    grower_.find_spawned(index, now);
     if (now.cut != node.flags.cut()) note(TreeChange::all);
     const RayNode parent = grower_.block().nodes[index];
     const bool respawns = (change_.flags(node.object) & RayChange::respawns) != 0;
     Spawned before;
     if (respawns)
-      before = spawn(parent, change_.before[change_.before_index[node.object.index()]], grower_.grow().rule());
+      spawn(parent, change_.before[change_.before_index[node.object.index()]], grower_.grow().rule(), before);
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
-      const bool is_stored = node.has_child(branch), is_now = now.branches.has(branch);
+      const bool is_stored = node.has_child(branch), is_now = now.branches().has(branch);
       if (is_stored != is_now) note(TreeChange::all);
       if (!is_now) {
         if (is_stored) counters_.culled.dropped += skip_tree(stored_);
         continue;
       }
       const SpawnedRay& ray = now.ray(branch);
-      const bool same_ray = !respawns || (before.branches.has(branch) && before.ray(branch).is_same_way(ray));
+      const bool same_ray = !respawns || (before.branches().has(branch) && before.ray(branch).is_same_way(ray));
       std::uint32_t child = kNoNode;
       if (is_stored && same_ray) {
         child = update(ray, index, history.child(branch));
