@@ -69,7 +69,7 @@ void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
 void HitFinder::find_children(const RayNode& node, const PathNode& stored, const SpawnedRay& now) {
   const RayObject& object = g_.scene.object(node.object);
   const bool respawns = has_flag(node.object, RayChange::respawns);
-  const RayObject& then = respawns ? change_.before[change_.before_index[node.object.index()]] : object;
+  const RayObject& then = respawns ? change_.value_before(node.object) : object;
   if (!g_.rule().may_spawn(then) && stored.children() == 0) return;
   Spawned old, changed;
   spawn(node, then, g_.rule(), old);
