@@ -1,7 +1,8 @@
 // --lights auto: a key, a fill and a rim light, as directional lights placed relative to the camera, so that they do
 // not depend on the size of the scene. A white diffuse surface that faces the key alone has a value of 0.8. Where none
 // of them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at. Under
-// Integrator::path a grey environment joins them.
+// Integrator::path they are discs in the sky, so that polished surfaces show them and shadows are soft, and a grey
+// environment joins them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,6 +22,7 @@ struct AutoLight {
   const char* name;
   double right, up, back;  // where the light comes from, in the camera's frame
   double white_diffuse;    // value of a white diffuse surface that faces it
+  double angle;            // radians across under Integrator::path, which leaves white_diffuse as it is
   Json color;
 };
 
@@ -131,9 +133,9 @@ void add_environment(LookDocument& document) {
 
 std::string add_auto_lights(LookDocument& document, const Camera& camera, Integrator integrator) {
   if (integrator == Integrator::path) add_environment(document);
-  const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, {1.0, 0.97, 0.92}},
-                              {"fill", 0.9, 0.3, 0.6, 0.22, {0.92, 0.96, 1.0}},
-                              {"rim", 0.3, 0.7, -0.9, 0.4, {1.0, 1.0, 1.0}}};
+  const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, 0.25, {1.0, 0.97, 0.92}},
+                              {"fill", 0.9, 0.3, 0.6, 0.22, 0.6, {0.92, 0.96, 1.0}},
+                              {"rim", 0.3, 0.7, -0.9, 0.4, 0.3, {1.0, 1.0, 1.0}}};
   std::vector<Way> ways;
   for (const AutoLight& light : lights)
     ways.push_back({(Imath::V3d(camera.right) * light.right + Imath::V3d(camera.up) * light.up -
@@ -144,12 +146,13 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera, Integr
   const WideBox bounds = world_bounds(document);
   const bool is_inside = bounds.intersects(camera.eye);
   const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, ways) : std::vector<Obstacle>();
-  for (std::size_t i = 0; i < std::size(lights); ++i)  // a diffuse surface reflects 1 / pi of the illuminance
-    add_light(document, lights[i].name,
-              {{"type", "directional"},
-               {"color", lights[i].color},
-               {"intensity", lights[i].white_diffuse * std::numbers::pi}},
-              {{"rotation", rotation_to(-ways[i].along)}});
+  for (std::size_t i = 0; i < std::size(lights); ++i) {
+    Json light{{"type", "directional"},
+               {"color", lights[i].color},  // a diffuse surface reflects 1 / pi of the illuminance
+               {"intensity", lights[i].white_diffuse * std::numbers::pi}};
+    if (integrator == Integrator::path) light["extras"]["relook"]["angle"] = lights[i].angle;
+    add_light(document, lights[i].name, std::move(light), {{"rotation", rotation_to(-ways[i].along)}});
+  }
   const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)),
                                                           [](const Obstacle& o) { return std::isfinite(o.distance); });
   if (!is_closed) return "";
