@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/pool.h"
 #include "cache/residency/residency.h"
 #include "frame/changed_pixels.h"
 #include "frame/image.h"
@@ -91,7 +92,7 @@ class StoredImage {
   void add_pieces();
   void add_layers();
   [[nodiscard]] TileLayers::Planes planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
-                                          std::vector<float>& working);
+                                          TileLayers::Working& working);
   void note_layers(std::size_t tile);
   void put_pixels(std::size_t tile, const TileLayers::Planes& planes, TileMask& changed);
   void index_paths();
@@ -104,7 +105,12 @@ class StoredImage {
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
 
   Image image_;
+  struct LayerWork {
+    TileLayers layers;  // of a tile whose layers are not kept
+    TileLayers::Working working;
+  };
   std::vector<TileLayers> layers_;  // by tile; of paths
+  Pool<LayerWork> layer_work_;
   Residency& residency_;
   std::vector<LightId> lights_;
   PathIndex index_;

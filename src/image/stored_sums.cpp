@@ -1,5 +1,6 @@
 // Sums of light of a stored image, tile by tile, and the pixels that they give.
 #include <cstring>
+#include <memory>
 #include <utility>
 
 #include "image/stored_image.h"
@@ -29,7 +30,7 @@ void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {
 }
 
 TileLayers::Planes StoredImage::planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
-                                       std::vector<float>& working) {
+                                       TileLayers::Working& working) {
   const auto lease = residency_.use(PieceKind::light_sums, tile);
   return layers.compose(image_.light_sums[tile], colors, image_.view.samples, working);
 }
@@ -38,17 +39,17 @@ void StoredImage::refresh_from_sums(std::size_t tile, std::span<const LightColor
   const auto lease = residency_.use(PieceKind::light_layers, tile);
   TileLayers& kept = layers_[tile];
   if (kept.shows(colors)) return;
-  std::vector<float> working;
+  const auto work = layer_work_.take([] { return std::make_unique<LayerWork>(); });
   if (!kept.empty()) {
     const std::size_t bytes = kept.bytes();
-    put_pixels(tile, planes(tile, colors, kept, working), changed);
+    put_pixels(tile, planes(tile, colors, kept, work->working), changed);
     if (kept.bytes() != bytes) note_layers(tile);
     return;
   }
-  TileLayers layers;
-  put_pixels(tile, planes(tile, colors, layers, working), changed);
-  if (!residency_.is_worth_room(PieceKind::light_layers, tile, layers.bytes())) return;
-  kept = std::move(layers);
+  work->layers.forget();
+  put_pixels(tile, planes(tile, colors, work->layers, work->working), changed);
+  if (!residency_.is_worth_room(PieceKind::light_layers, tile, work->layers.bytes())) return;
+  kept = std::exchange(work->layers, TileLayers());
   note_layers(tile);
 }
 

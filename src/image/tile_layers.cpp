@@ -31,42 +31,47 @@ bool TileLayers::shows(std::span<const LightColor> colors) const {
   return true;
 }
 
-void TileLayers::begin(const PackedSums& sums, std::uint32_t samples) {
+void TileLayers::begin(const PackedSums& sums, std::uint32_t samples, Working& working) {
   layers_.resize(sums.sums());
-  for (std::size_t i = 0; i < layers_.size(); ++i) layers_[i].has_light = !sums.is_zero(i);
-  std::vector<double> values(sums.pixels());
-  sums.coverage_values(values);
-  coverage_.resize(values.size());
-  scale(values, 1, samples, coverage_.data());
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    layers_[i].has_light = !sums.is_zero(i);
+    layers_[i].is_worked_out = false;
+  }
+  working.sums.resize(sums.pixels());
+  sums.coverage_values(working.sums);
+  coverage_.resize(sums.pixels());
+  scale(working.sums, 1, samples, coverage_.data());
 }
 
 void TileLayers::work_out(const PackedSums& sums, std::size_t sum, const LightColor& color, std::uint32_t samples,
-                          Layer& layer) {
-  std::vector<double> values(sums.pixels());
-  layer.values.resize(kChannels * values.size());
-  layer.color = color;
+                          Layer& layer, Working& working) {
+  const std::size_t pixels = sums.pixels();
+  working.sums.resize(pixels);
+  layer.values.resize(kChannels * pixels);
   for (std::size_t channel = 0; channel < kChannels; ++channel) {
-    sums.channel_values(sum, channel, values);
-    scale(values, color[channel], samples, layer.values.data() + channel * values.size());
+    sums.channel_values(sum, channel, working.sums);
+    scale(working.sums, color[channel], samples, layer.values.data() + channel * pixels);
   }
+  layer.color = color;
+  layer.is_worked_out = true;
 }
 
 TileLayers::Planes TileLayers::compose(const PackedSums& sums, std::span<const LightColor> colors,
-                                       std::uint32_t samples, std::vector<float>& working) {
+                                       std::uint32_t samples, Working& working) {
   require(colors.size() == sums.sums(), "a colour a sum");
-  if (empty()) begin(sums, samples);
+  if (empty()) begin(sums, samples, working);
   const std::size_t pixels = sums.pixels();
-  working.assign(kChannels * pixels, 0.0F);
+  working.pixels.assign(kChannels * pixels, 0.0F);
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     Layer& layer = layers_[i];
     // A layer of zeros, of either sign, changes nothing: the sum begins with +0. The layer before stays for when the
     // light is on again.
     if (!layer.has_light || colors[i] == kBlack) continue;
-    if (layer.values.empty() || layer.color != colors[i]) work_out(sums, i, colors[i], samples, layer);
-    add(layer.values.data(), layer.values.size(), working.data());
+    if (!layer.is_worked_out || layer.color != colors[i]) work_out(sums, i, colors[i], samples, layer, working);
+    add(layer.values.data(), layer.values.size(), working.pixels.data());
   }
   shown_.assign(colors.begin(), colors.end());
-  const std::span<const float> all(working);
+  const std::span<const float> all(working.pixels);
   return {all.subspan(0, pixels), all.subspan(pixels, pixels), all.subspan(2 * pixels, pixels), coverage_};
 }
 

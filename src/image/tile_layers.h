@@ -13,6 +13,11 @@ namespace relook {
 
 class TileLayers {
  public:
+  /// Memory to work in, for one call at a time.
+  struct Working {
+    std::vector<float> pixels;
+    std::vector<double> sums;
+  };
   /// Pixels of a tile, channel by channel: R, G, B, A.
   using Planes = std::array<std::span<const float>, 4>;
 
@@ -23,20 +28,23 @@ class TileLayers {
   /// The pixels, each as compose() has it. They live in `working`. Requires: `sums` are the ones of the call before, if
   /// any layers are kept; a colour a sum.
   [[nodiscard]] Planes compose(const PackedSums& sums, std::span<const LightColor> colors, std::uint32_t samples,
-                               std::vector<float>& working);
+                               Working& working);
+  /// Nothing is kept but memory, for another tile.
+  void forget() { shown_.clear(); }
   /// Memory that they take.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   struct Layer {
     LightColor color{};         // by which the values are worked out
-    std::vector<float> values;  // [3 * pixels], channel by channel; empty: not worked out yet, or no light
+    std::vector<float> values;  // [3 * pixels], channel by channel
     bool has_light = false;
+    bool is_worked_out = false;
   };
 
-  void begin(const PackedSums& sums, std::uint32_t samples);
+  void begin(const PackedSums& sums, std::uint32_t samples, Working& working);
   static void work_out(const PackedSums& sums, std::size_t sum, const LightColor& color, std::uint32_t samples,
-                       Layer& layer);
+                       Layer& layer, Working& working);
 
   std::vector<Layer> layers_;      // one a sum
   std::vector<LightColor> shown_;  // one a sum; none: nothing is kept
