@@ -71,7 +71,9 @@ class PathUpdate {
     }
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
-    PathPass pass{change_, stored_.image(), programs_before, programs_after, grow_before, grow_after, {}, {}};
+    Pool<PathShader> shaders_before, shaders_after;
+    PathPass pass{change_,        stored_.image(), programs_before, programs_after, grow_before, grow_after,
+                  shaders_before, shaders_after,   {},              {}};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });

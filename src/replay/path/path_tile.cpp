@@ -1,5 +1,7 @@
 #include "replay/path/path_tile.h"
 
+#include <memory>
+
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "trace/tree/pack.h"
@@ -13,6 +15,11 @@ struct Batch {
   std::vector<std::uint32_t> roots;
 };
 
+Pool<PathShader>::Loan shader_of(const TilePrograms& programs, Pool<PathShader>& shaders) {
+  return shaders.take(
+      [&] { return std::make_unique<PathShader>(programs.scene(), programs.path(), programs.places()); });
+}
+
 class PathTileUpdater {
  public:
   PathTileUpdater(const PathPass& pass, std::size_t tile)
@@ -21,8 +28,8 @@ class PathTileUpdater {
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         samples_(pass.image.view.samples),
         primaries_(pass.grow_after.scene.camera(), pass.image.view),
-        shader_before_(pass.before.scene(), pass.before.path(), pass.before.places()),
-        shader_after_(pass.after.scene(), pass.after.path(), pass.after.places()),
+        shader_before_(shader_of(pass.before, pass.shaders_before)),
+        shader_after_(shader_of(pass.after, pass.shaders_after)),
         old_terms_(pass.before.places().count, rect_.pixels()),
         new_terms_(pass.after.places().count, rect_.pixels()),
         any_afresh_(pass.change.any_afresh()) {
@@ -61,7 +68,7 @@ class PathTileUpdater {
       for (std::uint32_t k = 0; k < changed_.roots.size(); ++k) pack_sample(changed_, changed_.roots[k], first + k);
       result_.samples += last - first;
       chunk.learn(changed_.block, last - first);
-      shade(changed_, shader_after_, TermSign::add, new_terms_, {});
+      shade(changed_, *shader_after_, TermSign::add, new_terms_, {});
     }
     result_.sums = PackedSums::pack(new_terms_);
     result_.has_changed = true;
@@ -116,8 +123,8 @@ class PathTileUpdater {
   }
   void flush() {
     stop_if_interrupted();
-    shade(old_, shader_before_, TermSign::subtract, old_terms_, {});
-    shade(changed_, shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, whole_});
+    shade(old_, *shader_before_, TermSign::subtract, old_terms_, {});
+    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, whole_});
   }
 
   const PathPass& pass_;
@@ -125,7 +132,7 @@ class PathTileUpdater {
   TileRect rect_;
   std::uint32_t samples_;
   PrimaryRays primaries_;
-  PathShader shader_before_, shader_after_;
+  Pool<PathShader>::Loan shader_before_, shader_after_;
   TileSums old_terms_, new_terms_;
   bool any_afresh_;
   Batch old_;      // trees as they were, of samples whose terms change
