@@ -38,7 +38,8 @@ LightEffect effect_of(const Light& before, const Light& after) {
                  before.rate != after.rate || before.emission != after.emission || before.image != after.image ||
                  before.rotation != after.rotation;
   effect.reshaded = before.range != after.range || before.inner_cone != after.inner_cone ||
-                    before.outer_cone != after.outer_cone || before.excluded != after.excluded;
+                    before.outer_cone != after.outer_cone || before.excluded != after.excluded ||
+                    before.sum != after.sum;
   effect.recolored = before.color != after.color || before.intensity != after.intensity || effect.reshaded;
   return effect;
 }

@@ -53,6 +53,8 @@ TEST(PathClasses, color_rows) {
       {kSky + "intensity", "1", "2"},
       {kSky + "background", "null", "{\"color\": [1, 0, 0]}"},
       {kSky + "background", "{\"image\": \"BumpImage\"}", "{\"color\": [1, 0, 0]}"},
+      {"/lights/Bulb/extras/relook/sum", "\"\"", "\"set\""},
+      {"/lights/Bulb/extras/relook/sum", "\"set\"", "\"others\""},
       {kGold + "emissiveFactor", "[0.5, 0, 0]", "[1, 0, 0]"},
       {kGold + "pbrMetallicRoughness/roughnessFactor", "0.52", "0.68"},  // alpha in [1/4, 1/2)
       {kGold + "pbrMetallicRoughness/metallicFactor", "0.3", "0.7"},

@@ -236,6 +236,7 @@ TEST(PathLights, whitted_has_nothing_of_it) {
   for (const auto& [path, value] : std::initializer_list<std::pair<const char*, const char*>>{
            {"/lights/Bulb/extras/relook/radius", "1"},
            {"/lights/Bulb/extras/relook/rate", "0.5"},
+           {"/lights/Bulb/extras/relook/sum", "\"set\""},
            {"/nodes/Lamp/extras/relook/excludes", "[\"Floor\"]"},
            {"/nodes/Lamp/extras/relook/visible", "true"},
            {"/scene/extras/relook/environment/background", "{\"color\": [1, 1, 1]}"}})

@@ -32,7 +32,9 @@ class PathTileUpdater {
         shader_after_(shader_of(pass.after, pass.shaders_after)),
         old_terms_(pass.before.places().count, rect_.pixels()),
         new_terms_(pass.after.places().count, rect_.pixels()),
-        any_afresh_(pass.change.any_afresh()) {
+        no_sums_(pass.before.places().count, 0),
+        adds_(pass.change.any_afresh() || pass.change.any_given()),
+        takes_(pass.change.any_taken()) {
     result_.fresh.tile = tile;
   }
 
@@ -41,7 +43,7 @@ class PathTileUpdater {
     flush();
     const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
                               !std::ranges::is_sorted(pass_.change.old_of_new);
-    if (result_.samples == 0 && !any_afresh_ && !is_reordered) {
+    if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
       result_.sums = sums;
       return std::move(result_);
     }
@@ -79,7 +81,8 @@ class PathTileUpdater {
   void update_sample(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
     const bool updates = pass_.update_path[path.index()] != 0, shades = pass_.shade_path[path.index()] != 0;
-    if (!updates && !shades && !any_afresh_) return;
+    const bool relights = (adds_ || takes_) && (pass_.relight_path.empty() || pass_.relight_path[path.index()] != 0);
+    if (!updates && !shades && !relights) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     const std::span<const std::uint32_t> words = pass_.image.paths.words(path);
     const StoredTree stored{PathCursor(words, {pass_.change.step.rays.old_lights.size(), 0}), trees_.hits_of(sample)};
@@ -93,16 +96,18 @@ class PathTileUpdater {
       root = expand_tree(pass_.grow_after, primary, sample, stored, changed_.block, result_.counters);
     if (what != TreeChange::none || pass_.change.step.rays.lights_changed) pack_sample(changed_, root, sample);
     const bool is_whole = shades || what == TreeChange::all;
-    if (!is_whole && !any_afresh_) {
+    const bool adds = is_whole || (relights && adds_), takes = is_whole || (relights && takes_);
+    if (adds)
+      changed_.roots.push_back(root);
+    else
       changed_.block.rewind(mark);
-      return;
-    }
+    if (!adds && !takes) return;
     ++result_.samples;
     whole_[sample] = is_whole ? 1 : 0;
-    changed_.roots.push_back(root);
-    if (is_whole)
+    if (takes)
       old_.roots.push_back(expand_tree(pass_.grow_before, primary, sample, stored, old_.block, result_.counters));
-    if (ChunkSize::is_full(changed_.block, changed_.roots.size())) flush();
+    if (ChunkSize::is_full(changed_.block, changed_.roots.size()) || ChunkSize::is_full(old_.block, old_.roots.size()))
+      flush();
   }
 
   void pack_sample(const Batch& batch, std::uint32_t root, std::uint32_t sample) {
@@ -123,8 +128,8 @@ class PathTileUpdater {
   }
   void flush() {
     stop_if_interrupted();
-    shade(old_, *shader_before_, TermSign::subtract, old_terms_, {});
-    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, whole_});
+    shade(old_, *shader_before_, TermSign::subtract, old_terms_, {no_sums_, pass_.change.taken, whole_});
+    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_});
   }
 
   const PathPass& pass_;
@@ -134,8 +139,9 @@ class PathTileUpdater {
   PrimaryRays primaries_;
   Pool<PathShader>::Loan shader_before_, shader_after_;
   TileSums old_terms_, new_terms_;
-  bool any_afresh_;
-  Batch old_;      // trees as they were, of samples whose terms change
+  std::vector<std::uint8_t> no_sums_;
+  bool adds_, takes_;  // terms of some lights, beside those of samples whose terms all change
+  Batch old_;      // trees as they were, of samples whose terms change, or of which some lights' are taken out
   Batch changed_;  // the same as they are now, and those of which only some lights are worked out afresh
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
   std::vector<std::uint32_t> words_;

@@ -22,6 +22,7 @@ struct PathPass {
   Pool<PathShader>& shaders_after;
   std::vector<std::uint8_t> update_path;  // by path: its trees may change, or must be packed anew
   std::vector<std::uint8_t> shade_path;   // by path: its terms change though its tree does not
+  std::vector<std::uint8_t> relight_path;  // by path: lights that are taken or given may reach it; empty: they may all
 };
 
 struct PathTileResult {

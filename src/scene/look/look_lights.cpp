@@ -11,6 +11,7 @@
 #include <span>
 
 #include "scene/compile/compile_material.h"
+#include "scene/look/light_shares.h"
 #include "scene/look/look.h"
 #include "scene/look/look_bounds.h"
 #include "scene/look/look_names.h"
@@ -102,8 +103,8 @@ std::vector<Obstacle> obstacles(const LookDocument& document, const WidePoint& e
 }
 
 /// Adds a light and its node to the look document, both called `wanted` or, if that is taken, `wanted_2` and so on.
-/// `node`: its transform.
-void add_light(LookDocument& document, const char* wanted, Json light, Json node) {
+/// `node`: its transform. Returns the name.
+std::string add_light(LookDocument& document, const char* wanted, Json light, Json node) {
   const std::string name = unique_name(wanted, [&](const std::string& candidate) {
     return document.look["lights"].contains(candidate) || document.look["nodes"].contains(candidate);
   });
@@ -112,6 +113,7 @@ void add_light(LookDocument& document, const char* wanted, Json light, Json node
   node["extensions"]["KHR_lights_punctual"]["light"] = name;
   fill_defaults(Section::nodes, node);
   document.look["nodes"][name] = std::move(node);
+  return name;
 }
 
 constexpr double kKeyDiffuse = 0.8;
@@ -146,20 +148,26 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera, Integr
   const WideBox bounds = world_bounds(document);
   const bool is_inside = bounds.intersects(camera.eye);
   const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, ways) : std::vector<Obstacle>();
+  std::vector<std::string> added;
   for (std::size_t i = 0; i < std::size(lights); ++i) {
     Json light{{"type", "directional"},
                {"color", lights[i].color},  // a diffuse surface reflects 1 / pi of the illuminance
                {"intensity", lights[i].white_diffuse * std::numbers::pi}};
     if (integrator == Integrator::path) light["extras"]["relook"]["angle"] = lights[i].angle;
-    add_light(document, lights[i].name, std::move(light), {{"rotation", rotation_to(-ways[i].along)}});
+    added.push_back(
+        add_light(document, lights[i].name, std::move(light), {{"rotation", rotation_to(-ways[i].along)}}));
   }
   const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)),
                                                           [](const Obstacle& o) { return std::isfinite(o.distance); });
+  if (is_closed) {
+    const double extent = bounds.size().length() / 2;
+    const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
+    added.push_back(add_light(
+        document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
+        {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}}));
+  }
+  write_light_shares(document, added);
   if (!is_closed) return "";
-  const double extent = bounds.size().length() / 2;
-  const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
-  add_light(document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
-            {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}});
   return "the camera stands in a room closed by node \"" + met.front().node +
          "\", which no light of --lights auto reaches: a lamp at the camera lights it";
 }
