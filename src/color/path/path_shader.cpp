@@ -286,8 +286,8 @@ struct PathShader::Impl {
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
         const LightTerm& term = terms[chosen[lane]];
         const RayNode& node = block->nodes[term.node];
-        put(places.of_light[term.light], node,
-            weights[term.node] * surface_scale(node) * tinted(from_lanes(kernel, 0, lane), block->lights[node.first_light + term.light]));
+        const Color light = tinted(from_lanes(kernel, 0, lane), block->lights[node.first_light + term.light]);
+        put(places.of_light[term.light], node, weights[term.node] * (light * surface_scale(node)));
       }
     });
   }
