@@ -33,7 +33,7 @@ struct SurfaceOptics {
 
 [[nodiscard]] SurfaceOptics surface_optics(const Material& material, const Mesh& mesh);
 
-/// Under Integrator::path: is coverage alone what sends rays straight on? Blinn-phong's transparency sends them on, too.
+/// Under Integrator::path: does coverage alone send rays straight on? Blinn-phong's transparency sends them on, too.
 [[nodiscard]] inline bool passes_by_coverage(const Material& material) {
   return material.alpha_mode == AlphaMode::blend &&
          !(material.model == IlluminationModel::blinn_phong && material.transparency > 0);

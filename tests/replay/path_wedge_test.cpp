@@ -82,7 +82,8 @@ TEST(PathCoverageEdits, of_textures_vertex_colours_and_other_models) {
   const int leaves = scene.texture("Leaves", scene.image("LeafImage", single_level_image(16, leaf_texel)));
   const auto placed = [](int mesh, double x, double y) { return Json{{"mesh", mesh}, {"translation", {x, y, 0}}}; };
   scene.node("Floor", placed(scene.mesh("Floor", plane_mesh(4, 1), scene.material("Floor", lambert(0.6))), 0, 0));
-  scene.node("Ball", placed(scene.mesh("Ball", sphere_mesh(0.5F, 16, 10), scene.material("Metal", metal(0.2))), 0, 0.5));
+  const int ball = scene.mesh("Ball", sphere_mesh(0.5F, 16, 10), scene.material("Metal", metal(0.2)));
+  scene.node("Ball", placed(ball, 0, 0.5));
   Json sheet = lambert(0.7);
   sheet["alphaMode"] = "BLEND";
   sheet["doubleSided"] = true;
