@@ -27,6 +27,9 @@ Color from_lanes(const KernelRun<PathBatch>& run, std::size_t column, std::size_
   return {run.output(3 * column)[lane], run.output(3 * column + 1)[lane], run.output(3 * column + 2)[lane]};
 }
 
+/// What is multiplied by coverage counts so much.
+float surface_scale(const RayNode& node) { return node.coverage.sees_surface() ? node.coverage.scale() : 0.0F; }
+
 bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 }  // namespace
@@ -155,13 +158,19 @@ struct PathShader::Impl {
       std::size_t column = 0;
       for (std::size_t b = 0; b < kBranches; ++b) {
         if (!key.children.has(static_cast<Branch>(b))) continue;
-        for (std::size_t lane = 0; lane < chosen.size(); ++lane)
-          weights[nodes[all[chosen[lane]]].child[b]] = from_lanes(kernel, column, lane);
+        for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+          const RayNode& node = nodes[all[chosen[lane]]];
+          weights[node.child[b]] = from_lanes(kernel, column, lane) * node.coverage.scale();
+        }
         ++column;
       }
-      for (std::size_t lane = 0; lane < chosen.size(); ++lane)
-        columns[all[chosen[lane]]] = {from_lanes(kernel, column, lane), from_lanes(kernel, column + 1, lane),
-                                      from_lanes(kernel, column + 2, lane), kernel.output(3 * (column + 3))[lane]};
+      for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+        const float scale = surface_scale(nodes[all[chosen[lane]]]);
+        columns[all[chosen[lane]]] = {from_lanes(kernel, column, lane) * scale,
+                                      from_lanes(kernel, column + 1, lane) * scale,
+                                      from_lanes(kernel, column + 2, lane) * scale,
+                                      kernel.output(3 * (column + 3))[lane]};
+      }
     });
     open_shares.assign(nodes.size(), 0);
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -282,8 +291,8 @@ struct PathShader::Impl {
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
         const LightTerm& term = terms[chosen[lane]];
         const RayNode& node = block->nodes[term.node];
-        const LightLink& link = block->lights[node.first_light + term.light];
-        put_light(term.light, node, weights[term.node] * tinted(from_lanes(kernel, 0, lane), link));
+        const Color light = tinted(from_lanes(kernel, 0, lane), block->lights[node.first_light + term.light]);
+        put_light(term.light, node, weights[term.node] * (light * surface_scale(node)));
       }
     });
   }
