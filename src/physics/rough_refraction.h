@@ -32,10 +32,10 @@ template <class V>
           dot(sum, sum)};
 }
 
-/// G1 of Smith over the cosine, times a half: what of the microfacets a direction at this cosine sees.
+/// G1 of Smith over the cosine.
 template <class S>
-[[nodiscard]] S half_seen(S alpha2, S cosine) {
-  return 1.0F / (cosine + sqrt(cosine * cosine * (1.0F - alpha2) + alpha2));
+[[nodiscard]] S smith_over_cosine(S alpha2, S cosine) {
+  return 2.0F / (cosine + sqrt(cosine * cosine * (1.0F - alpha2) + alpha2));
 }
 
 /// Without 1 - F of `vh`, times the cosine with the way. `sine2`: half_sine2 of the half vector.
@@ -45,7 +45,7 @@ template <class V>
   using S = ScalarOf<V>;
   const S d = max(at.nh * at.nh * alpha2 + sine2, 1e-9F);
   const S distribution = alpha2 * kInversePi / (d * d);
-  const S seen = 2.0F * half_seen(alpha2, nv) * (2.0F * half_seen(alpha2, at.nl) * at.nl);
+  const S seen = smith_over_cosine(alpha2, nv) * (smith_over_cosine(alpha2, at.nl) * at.nl);
   return distribution * seen * at.vh * (eta * eta * at.lh / max(at.bend2, 1e-9F));
 }
 
@@ -65,7 +65,7 @@ template <class V>
   const float alpha2 = alpha * alpha, sine2 = square(at.half.x) + square(at.half.y);
   const float d = max(at.nh * at.nh * alpha2 + sine2, 1e-9F);
   const float distribution = alpha2 * kInversePi / (d * d);
-  return distribution * (2.0F * half_seen(alpha2, view.z)) * at.vh * (eta * eta * at.lh / max(at.bend2, 1e-9F));
+  return distribution * smith_over_cosine(alpha2, view.z) * at.vh * (eta * eta * at.lh / max(at.bend2, 1e-9F));
 }
 
 }  // namespace relook

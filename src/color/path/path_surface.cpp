@@ -150,7 +150,7 @@ class LayeredSurface {
   }
   /// Of a thin surface: what would be reflected on the other side, less what each microfacet reflects; with the cosine.
   [[nodiscard]] Scalar mirrored_through(const Triple& way) {
-    const Triple up = way - normal_ * (2.0F * dot(normal_, way));
+    const Triple up = way - normal_ * (dot(normal_, way) * 2.0F);
     const LobeAngles<Triple> at = lobe_angles(normal_, view_, up);
     return precise_ggx(blur_alpha2(), at.nh, half_sine2(normal_, at), at.nl, nv_) * at.nl * passed(at.vh);
   }
