@@ -111,7 +111,8 @@ void inspect_cache(const Arguments& arguments, Console& console) {
   const CacheSizes sizes = cache_sizes(manifest);
   const bool is_path = integrator_of(manifest) == Integrator::path;
   const std::string depths = is_path ? " (diffuse " + content["diffuse_depth"].dump() + ", glossy " +
-                                           content["glossy_depth"].dump() + ")"
+                                           content["glossy_depth"].dump() + ", transmission " +
+                                           content["transmission_depth"].dump() + ")"
                                      : "";
   console.line(arguments.inputs[0] + ": scene " + content["scene"].get<std::string>() + ", camera " +
                content["camera"]["name"].get<std::string>() + ", " + content["camera"]["width"].dump() + "x" +

@@ -64,7 +64,8 @@ struct Condition {
 std::vector<Condition> conditions_of_view(const ViewArguments& view) {
   const bool is_whitted = view.sampling.integrator == Integrator::whitted;
   constexpr const char* kReason = "it is for --integrator path";
-  return {{"--diffuse-depth", is_whitted, kReason}, {"--glossy-depth", is_whitted, kReason}};
+  return {{"--diffuse-depth", is_whitted, kReason}, {"--glossy-depth", is_whitted, kReason},
+          {"--transmission-depth", is_whitted, kReason}};
 }
 
 std::vector<Condition> conditions_of(const Arguments& arguments) {

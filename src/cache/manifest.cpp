@@ -122,6 +122,7 @@ void add_integrator(Json& json, const ViewOptions& view) {
   if (view.integrator != Integrator::path) return;
   json["diffuse_depth"] = view.diffuse_depth;
   json["glossy_depth"] = view.glossy_depth;
+  json["transmission_depth"] = view.transmission_depth;
 }
 
 void read_integrator(const JsonView& content, ViewOptions& view) {
@@ -132,6 +133,7 @@ void read_integrator(const JsonView& content, ViewOptions& view) {
   if (view.integrator != Integrator::path) return;
   view.diffuse_depth = static_cast<std::uint32_t>(content.at("diffuse_depth").integer(0, kMostDepth));
   view.glossy_depth = static_cast<std::uint32_t>(content.at("glossy_depth").integer(0, kMostDepth));
+  view.transmission_depth = static_cast<std::uint32_t>(content.at("transmission_depth").integer(0, kMostDepth));
 }
 
 Json content_json(const Manifest& manifest) {

@@ -55,6 +55,8 @@ CacheAnswer other_content(const Manifest& there, const Manifest& wanted) {
   if (view.integrator == Integrator::path && other_view.integrator == Integrator::path) {
     compare(view.diffuse_depth == other_view.diffuse_depth, "--diffuse-depth", std::to_string(view.diffuse_depth));
     compare(view.glossy_depth == other_view.glossy_depth, "--glossy-depth", std::to_string(view.glossy_depth));
+    compare(view.transmission_depth == other_view.transmission_depth, "--transmission-depth",
+            std::to_string(view.transmission_depth));
   }
   compare(storage.ray_trees_percent == wanted.storage.ray_trees_percent, "--ray-trees",
           number(storage.ray_trees_percent));

@@ -35,6 +35,9 @@ Buckets alpha_buckets(float factor, float smallest, float largest) {
   return {alpha_bucket(low), alpha_bucket(high)};
 }
 
+/// Of blinn-phong: [2^k, 2^(k+1)) is bucket k, everything below 1 is -1.
+int shininess_bucket(float shininess) { return shininess < 1 ? -1 : std::ilogb(shininess); }
+
 int metal_bucket(float metallic) { return metallic < 1.0F / 64 ? 0 : metallic > 63.0F / 64 ? 2 : 1; }
 Buckets metal_buckets(const Material& m) {
   const auto [smallest, largest] = texture_range(m.slot(Slot::metallic_roughness));
@@ -81,10 +84,9 @@ bool turns_lobes(const Material& before, const Material& after, std::span<const 
   if (after.model == IlluminationModel::unlit) return false;
   if (relook::differs(MaterialRow::bends, before, after, rows)) return true;
   if (after.model == IlluminationModel::blinn_phong)
-    return before.shininess != after.shininess || before.reflection != after.reflection ||
+    return shininess_bucket(before.shininess) != shininess_bucket(after.shininess) || before.reflection != after.reflection ||
            before.refraction != after.refraction || before.transparency != after.transparency ||
-           is_black(before.phong_diffuse) != is_black(after.phong_diffuse) ||
-           is_black(before.phong_specular) != is_black(after.phong_specular);
+           material_lobes(before) != material_lobes(after);
   if (!has_same_lobes(before, after) || before.ior != after.ior) return true;
   if (before.anisotropy != after.anisotropy ||
       (after.anisotropy > 0 && (before.anisotropy_rotation != after.anisotropy_rotation ||

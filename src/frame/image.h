@@ -19,8 +19,9 @@ struct ViewOptions {
   std::uint32_t max_depth = 6;    // generations of rays, primary rays are the first; 1..32
   std::uint32_t shadow_bits = 0;  // of the shadow counters in ray paths; 0..4
   Integrator integrator = Integrator::whitted;
-  // Of paths alone, 0..32: bounces off diffuse surfaces (0: direct light only), and glossy ones.
-  std::uint32_t diffuse_depth = 0, glossy_depth = 4;
+  // Of paths alone, 0..32: bounces off diffuse surfaces (0: direct light only), off glossy ones, and through what
+  // transmits.
+  std::uint32_t diffuse_depth = 0, glossy_depth = 4, transmission_depth = 16;
   bool operator==(const ViewOptions&) const = default;
 };
 

@@ -6,7 +6,9 @@ namespace relook {
 
 GrowScene grow_scene(const RayScene& scene, const Tracer::TopLevel* level, const ViewOptions& view,
                      std::uint32_t shadow_bits, const ObjectLevels* objects) {
-  return {scene, level, view.max_depth, shadow_bits, objects, view.integrator, view.diffuse_depth, view.glossy_depth};
+  return {scene,           level,           view.max_depth,     shadow_bits,
+          objects,         view.integrator, view.diffuse_depth, view.glossy_depth,
+          view.transmission_depth};
 }
 
 std::vector<LightColor> colors_of(std::span<const LightSum> sums) {

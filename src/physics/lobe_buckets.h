@@ -31,11 +31,46 @@ struct AlphaBucket {
   return {static_cast<std::int8_t>(k < AlphaBucket::kHighest ? k : AlphaBucket::kHighest)};
 }
 
+/// The exponents in [2^k, 2^(k+1)) of Blinn and Phong's lobe, for k from 0 on; those below 1 for k = -1.
+struct ShininessBucket {
+  std::int8_t k;
+
+  /// The lower end: the exponent that samples all lobes of the bucket, none of which has a tail that it misses.
+  [[nodiscard]] constexpr float representative() const {
+    return k < 0 ? 0.0F : std::bit_cast<float>(static_cast<std::uint32_t>(k + 127) << 23);
+  }
+  /// Of GGX lobes about as wide as the narrowest of the bucket: alpha^2 = 2 / (n + 2) (Walter et al. 2007, section 5.2).
+  [[nodiscard]] AlphaBucket as_alpha() const;
+
+  auto operator<=>(const ShininessBucket&) const = default;
+};
+
+[[nodiscard]] constexpr ShininessBucket bucket_of_shininess(float shininess) {
+  if (shininess < 1.0F) return {-1};
+  return {static_cast<std::int8_t>(static_cast<int>(std::bit_cast<std::uint32_t>(shininess) >> 23) - 127)};
+}
+
+inline AlphaBucket ShininessBucket::as_alpha() const {
+  const float end = k < 0 ? 1.0F : 2.0F * representative();
+  return bucket_of_alpha(sqrt(2.0F / (end + 2.0F)));
+}
+
+/// A shininess whose lobe is about as wide as that of `alpha_floor`, or wider.
+template <class S, class A>
+[[nodiscard]] S floored_shininess(S shininess, A alpha_floor) {
+  return min(shininess, 2.0F / max(square(alpha_floor), 1e-9F) - 2.0F);
+}
+
 /// The least alpha of reflecting lobes behind one of this bucket, on its own; 1/4 behind a diffuse one.
 [[nodiscard]] constexpr float alpha_floor_behind(AlphaBucket bucket) {
   return bucket.lower() < 0.25F ? bucket.lower() : 0.25F;
 }
 inline constexpr float kAlphaFloorBehindDiffuse = 0.25F;
+
+/// How much wider cones grow along a ray of a lobe, metres per metre: a fraction of what its directions spread by, as
+/// neighbours in a pixel look at the same place. A diffuse lobe has an alpha of 1.
+[[nodiscard]] constexpr float cone_spread_behind(AlphaBucket bucket) { return bucket.lower() * 0.25F; }
+inline constexpr float kConeSpreadBehindDiffuse = 0.25F;
 
 /// A roughness whose alpha is at least `alpha_floor`: a step up, as the square of a rounded root may be below it.
 template <class S, class A>

@@ -8,20 +8,34 @@
 
 namespace relook {
 
-/// `diffuse` holds sheen, too.
-enum class Lobe : std::uint8_t { diffuse, specular, coat };
+/// `diffuse` holds sheen, too; `coat` is the power lobe of blinn-phong; `transmission` that of what is let through where
+/// it is blurred.
+enum class Lobe : std::uint8_t { diffuse, specular, coat, transmission };
 
 /// Which lobes a material has.
 struct LobeSet {
   bool diffuse, specular, coat;
+  bool transmission = false;
+  [[nodiscard]] bool any() const { return diffuse || specular || coat || transmission; }
 };
 
 /// Together 1, and each at least kLeastShare where the lobe is there; 0 where it is not.
 struct LobeShares {
   float diffuse, specular, coat;
+  float transmission = 0;
 
   [[nodiscard]] float of(Lobe lobe) const {
-    return lobe == Lobe::diffuse ? diffuse : lobe == Lobe::specular ? specular : coat;
+    switch (lobe) {
+      case Lobe::diffuse:
+        return diffuse;
+      case Lobe::specular:
+        return specular;
+      case Lobe::coat:
+        return coat;
+      case Lobe::transmission:
+        break;
+    }
+    return transmission;
   }
 };
 inline constexpr float kLeastShare = 0.1F;
@@ -35,10 +49,21 @@ inline constexpr float kLeastShare = 0.1F;
 /// (coat_reflectance). At least one lobe is there, or all shares are 0.
 [[nodiscard]] inline LobeShares lobe_shares(const LobeSet& lobes, MetallicBucket metallic, float reflectance,
                                             float coat) {
-  const float below = (lobes.diffuse ? kLeastShare : 0.0F) + (lobes.specular ? kLeastShare : 0.0F);
+  const float under = (lobes.diffuse ? kLeastShare : 0.0F) + (lobes.transmission ? kLeastShare : 0.0F);
+  const float below = under + (lobes.specular ? kLeastShare : 0.0F);
   LobeShares shares{0, 0, 0};
   if (lobes.coat) shares.coat = below == 0.0F ? 1.0F : min(max(share_of_reflection(coat), kLeastShare), 1.0F - below);
   const float rest = 1.0F - shares.coat;
+  if (lobes.transmission) {
+    // What goes through comes back as bright as what is reflected.
+    const float specular = metallic == MetallicBucket::dielectric ? reflectance
+                           : metallic == MetallicBucket::mixed    ? 0.5F
+                                                                  : 1.0F;
+    if (lobes.specular) shares.specular = min(max(rest * specular, kLeastShare), rest - under);
+    shares.transmission = (rest - shares.specular) * (lobes.diffuse ? 0.5F : 1.0F);
+    if (lobes.diffuse) shares.diffuse = rest - shares.specular - shares.transmission;
+    return shares;
+  }
   if (lobes.diffuse && lobes.specular) {
     const float specular = metallic == MetallicBucket::dielectric ? share_of_reflection(reflectance)
                            : metallic == MetallicBucket::mixed    ? 0.5F
@@ -53,6 +78,12 @@ inline constexpr float kLeastShare = 0.1F;
   return shares;
 }
 
+/// Of blinn-phong: `diffuse`, and its power lobe as `coat`.
+[[nodiscard]] inline LobeShares power_shares(const LobeSet& lobes) {
+  const float power = !lobes.coat ? 0.0F : lobes.diffuse ? 0.5F : 1.0F;
+  return {lobes.diffuse ? 1.0F - power : 0.0F, 0, power};
+}
+
 struct LobeChoice {
   Lobe lobe;
   float u;  // [0, 1): what is left of the number that chose, to be used again
@@ -65,9 +96,12 @@ struct LobeChoice {
   if (u < shares.diffuse) return {Lobe::diffuse, remapped(u, shares.diffuse)};
   const float above = u - shares.diffuse;
   // Where rounding leaves a number beyond the last share, the last lobe takes it.
-  if (shares.specular > 0.0F && (above < shares.specular || shares.coat == 0.0F))
+  if (shares.specular > 0.0F && (above < shares.specular || (shares.coat == 0.0F && shares.transmission == 0.0F)))
     return {Lobe::specular, remapped(above, shares.specular)};
-  if (shares.coat > 0.0F) return {Lobe::coat, remapped(above - shares.specular, shares.coat)};
+  const float last = above - shares.specular;
+  if (shares.coat > 0.0F && (last < shares.coat || shares.transmission == 0.0F))
+    return {Lobe::coat, remapped(last, shares.coat)};
+  if (shares.transmission > 0.0F) return {Lobe::transmission, remapped(last - shares.coat, shares.transmission)};
   return {Lobe::diffuse, kLast};
 }
 

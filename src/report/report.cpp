@@ -81,6 +81,7 @@ Json options_json(const RunReport& report) {
           {"max_depth", report.view.max_depth},
           {"diffuse_depth", is_path ? Json(report.view.diffuse_depth) : Json(nullptr)},
           {"glossy_depth", is_path ? Json(report.view.glossy_depth) : Json(nullptr)},
+          {"transmission_depth", is_path ? Json(report.view.transmission_depth) : Json(nullptr)},
           {"memory", or_null(structures.memory_bytes)},
           {"policy", structures.policy},
           {"disk", or_null(structures.disk_bytes)},

@@ -73,14 +73,22 @@ SurfaceOptics surface_optics(const Material& material, const Mesh& mesh) {
 
 MaterialLobes material_lobes(const Material& material) {
   if (material.model == IlluminationModel::unlit) return {};
-  if (material.model == IlluminationModel::blinn_phong) return {.diffuse = true};
+  if (material.model == IlluminationModel::blinn_phong)
+    return {.diffuse = material.phong_diffuse != Color(0, 0, 0), .coat = material.phong_specular != Color(0, 0, 0)};
   const auto is_textured = [&](Slot slot) { return material.slot(slot).kind != TextureKind::none; };
   const bool is_metal = material.metallic >= 1 && !is_textured(Slot::metallic_roughness);
   const bool lets_all_through = material.transmission >= 1 && !is_textured(Slot::transmission);
   const bool is_cloth = material.sheen_color != Color(0, 0, 0);
   return {.diffuse = (!is_metal && !lets_all_through) || is_cloth,
           .specular = material.specular > 0 || material.metallic > 0 || material.iridescence > 0,
-          .coat = material.clearcoat > 0};
+          .coat = material.clearcoat > 0,
+          .transmission = blurs(material)};
+}
+
+bool blurs(const Material& material) {
+  if (material.model != IlluminationModel::metallic_roughness || !(material.transmission > 0)) return false;
+  if (!(material.roughness * texture_range(material.slot(Slot::metallic_roughness)).second.g >= kLeastBlur)) return false;
+  return !(material.thickness > 0) || (material.ior >= kLeastBentIor && material.dispersion <= kMostBlurredDispersion);
 }
 
 }  // namespace relook

@@ -40,12 +40,19 @@ struct SurfaceOptics {
 }
 
 /// The lobes that a material has under Integrator::path on its outer side: decided by factors, never by a texel. Sheen
-/// goes with the diffuse one, and so does the power lobe of blinn-phong.
+/// goes with the diffuse one; the power lobe of blinn-phong is `coat`.
 struct MaterialLobes {
   bool diffuse = false, specular = false, coat = false;
+  bool transmission = false;  // of what is let through, where the surface `blurs`
   bool operator==(const MaterialLobes&) const = default;
 };
 [[nodiscard]] MaterialLobes material_lobes(const Material& material);
+/// Is what goes through blurred by a roughness that may reach kLeastBlur, so that a lobe stands for it under
+/// Integrator::path? Otherwise one ray goes on.
+[[nodiscard]] bool blurs(const Material& material);
+inline constexpr float kLeastBlur = 0.0625F;
+/// Where the index of a volume is next to 1, be it that of red light alone, microfacets bend nothing.
+inline constexpr float kLeastBentIor = 1.015625F, kMostBlurredDispersion = 8;
 
 /// Smallest and largest linear value that a slot multiplies its factor by; (1, 1) for an empty slot.
 [[nodiscard]] std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot);

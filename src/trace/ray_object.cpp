@@ -101,6 +101,7 @@ void RayObjectMaker::drop_unused() {
 void RayObjectMaker::set_material(RayObject& object, std::shared_ptr<const Material> material) {
   object.material = std::move(material);
   object.optics = surface_optics(*object.material, *object.mesh);
+  object.blurs = integrator_ == Integrator::path && object.optics.refracts && relook::blurs(*object.material);
   const Mesh& mesh = *object.mesh;
   for (std::uint8_t set = 0; set < object.tangents.size(); ++set) {
     const auto needs = [&](Slot which) {

@@ -26,6 +26,7 @@ struct RayObject {
   float offset = 0;             // metres along the normal that clear a hit of rounding errors
   bool flipped = false;         // negative determinant: counter-clockwise triangles are back faces
   bool alive = false;
+  bool blurs = false;           // under Integrator::path, what goes through is scattered by a lobe (scene/surface_optics.h)
   std::uint64_t key = 0;  // orders coincident hits, the same whatever the history of edits
   SurfaceOptics optics;
 };
@@ -33,6 +34,7 @@ struct RayObject {
 /// Makes the entries of objects. What several need, a deformed mesh or its tangents, is made once, while one uses it.
 class RayObjectMaker {
  public:
+  explicit RayObjectMaker(Integrator integrator) : integrator_(integrator) {}
   /// `material`: of the object, as it is to be.
   [[nodiscard]] RayObject make(const Scene& scene, const Object& object, std::shared_ptr<const Material> material);
   void set_material(RayObject& object, std::shared_ptr<const Material> material);
@@ -56,6 +58,7 @@ class RayObjectMaker {
   [[nodiscard]] std::shared_ptr<const CornerTangents> tangents_of(const std::shared_ptr<const Mesh>& mesh,
                                                                   std::uint8_t texcoord);
 
+  Integrator integrator_;
   std::map<MeshId, std::vector<Shaped>> shaped_;
   std::map<std::pair<const Mesh*, std::uint8_t>, Derived> derived_;  // by mesh and uv set
 };

@@ -67,7 +67,7 @@ RayScene::RayScene(const Scene& scene) : RayScene([&] {
   auto tables = std::make_shared<Tables>();
   tables->camera = std::make_shared<const Camera>(scene.camera);
   tables->lights = std::make_shared<const Lights>();
-  tables->maker = std::make_shared<RayObjectMaker>();
+  tables->maker = std::make_shared<RayObjectMaker>(scene.integrator);
   apply(*tables, scene, {});
   return std::shared_ptr<const Tables>(std::move(tables));
 }()) {}

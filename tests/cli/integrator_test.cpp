@@ -1,4 +1,4 @@
-// --integrator, --diffuse-depth and --glossy-depth: which verbs take them, what is refused beside them, and that a
+// --integrator, --diffuse-depth, --glossy-depth and --transmission-depth: which verbs take them, what is refused beside them, and that a
 // cache, its replays and their reports are of one integrator.
 #include "cli_fixture.h"
 
@@ -21,7 +21,7 @@ class IntegratorCli : public Cli {
 };
 
 TEST_F(IntegratorCli, depths_are_for_path_alone) {
-  for (const char* option : {"--diffuse-depth", "--glossy-depth"}) {
+  for (const char* option : {"--diffuse-depth", "--glossy-depth", "--transmission-depth"}) {
     expect_error(relook({"render", kScene, "-o", at("x.exr"), option, "1"}), 1, std::string("render ") + option);
     expect_error(relook({"preprocess", kScene, "-o", at("c"), option, "1", "--integrator", "whitted"}), 1,
                  "it is for --integrator path");
@@ -50,7 +50,7 @@ TEST_F(IntegratorCli, structures_that_path_has_none_of_are_refused) {
 
 TEST_F(IntegratorCli, a_replay_is_of_the_integrator_of_its_cache) {
   write_journal();
-  ASSERT_EQ(preprocess_path("path", {"--diffuse-depth", "1", "--glossy-depth", "2"}).exit_code, 0);
+  ASSERT_EQ(preprocess_path("path", {"--diffuse-depth", "1", "--glossy-depth", "2", "--transmission-depth", "3"}).exit_code, 0);
   ASSERT_EQ(preprocess("whitted").exit_code, 0);
   expect_error(replay("path", "r", {"--integrator", "whitted"}), 3,
                "the cache is of --integrator path; preprocess again with --integrator whitted");
@@ -63,6 +63,7 @@ TEST_F(IntegratorCli, a_replay_is_of_the_integrator_of_its_cache) {
   EXPECT_EQ(paths["integrator"], "path");
   EXPECT_EQ(paths["diffuse_depth"], 1);
   EXPECT_EQ(paths["glossy_depth"], 2);
+  EXPECT_EQ(paths["transmission_depth"], 3);
   for (const char* none : {"tunnels", "groups", "color_trees"}) EXPECT_EQ(paths[none], 0) << none;
   EXPECT_EQ(lamps["integrator"], "whitted");
   EXPECT_TRUE(lamps["diffuse_depth"].is_null());
@@ -108,7 +109,7 @@ TEST_F(IntegratorCli, inspect_says_how_large_areas_are_and_what_a_cache_is_of) {
   EXPECT_FALSE(summary.contains("sun_share")) << "the environment has no image";
   ASSERT_EQ(preprocess_path("c").exit_code, 0);
   const ProgramResult cache = relook({"inspect", at("c")});
-  EXPECT_NE(cache.output.find("path, depth 6 (diffuse 0, glossy 4)"), std::string::npos) << cache.output;
+  EXPECT_NE(cache.output.find("path, depth 6 (diffuse 0, glossy 4, transmission 16)"), std::string::npos) << cache.output;
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 // directional albedos of tests/oracle/path_albedo.h; nothing gives more than it gets.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "color/physics_scenes.h"
 #include "path_albedo.h"
+#include "path_reference_surface.h"
 #include "path_studio.h"
 
 namespace relook {
@@ -118,8 +120,60 @@ TEST(PathFurnace, a_thin_sheet_of_glass_lets_through_what_it_does_not_reflect) {
       material["pbrMetallicRoughness"]["roughnessFactor"] = roughness;
       const Measured seen = plane_in_furnace(material, nv);
       const std::string name = name_of("thin glass", nv, roughness);
-      expect_measured(seen, grey(ggx_albedo(nv, roughness, of_plastic) + 1 - of_plastic(nv)), name);
+      // Blurred, each microfacet lets through what it does not reflect.
+      const double smooth = ggx_albedo(nv, roughness, of_plastic) + 1 - of_plastic(nv);
+      expect_measured(seen, grey(roughness < 0.0625 ? smooth : ggx_albedo(nv, roughness, no_loss)), name);
       expect_no_gain(seen, name);
+    }
+}
+
+TEST(PathFurnace, a_rough_boundary_of_glass_lets_through_what_its_microfacets_do_not_reflect) {
+  // A plane is all that there is of the volume: what goes in or out meets the sky.
+  for (const double nv : kCosines)
+    for (const double roughness : {0.1, 0.3, 0.6, 1.0})
+      for (const bool is_inside : {false, true}) {
+        Json material = glass(1.5, 1);
+        material["pbrMetallicRoughness"]["roughnessFactor"] = roughness;
+        material["doubleSided"] = true;
+        PathStudio scene;
+        scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Plane", material))}});
+        add_white_sky(scene);
+        const auto x = static_cast<float>(3 * std::sqrt(1 - nv * nv)), y = static_cast<float>(is_inside ? -3 * nv : 3 * nv);
+        const Measured seen = scene.seen(Point(x, y, 0), Point(0, 0, 0));
+        const double eta = is_inside ? 1 / 1.5 : 1.5;
+        const auto reflectance = [&](double cosine) {
+          const double f0 = std::pow(0.5 / 2.5, 2), exact = exact_reflectance(cosine, eta);
+          return f0 + (1 - f0) * std::clamp((exact - f0) / (1 - f0), 0.0, 1.0);
+        };
+        const double expected = ggx_albedo(nv, roughness, reflectance) + rough_transmittance(nv, roughness, eta);
+        const std::string name = name_of(is_inside ? "from inside" : "from outside", nv, roughness);
+        expect_measured(seen, grey(expected), name, 2e-3);
+        expect_no_gain(seen, name);
+      }
+}
+
+TEST(PathFurnace, half_of_a_rough_sheet_scatters) {
+  // transmission 1/2: the other half of what is not reflected is diffuse.
+  Json material = glass(1.5, 0);
+  material["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
+  material["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.5;
+  const auto passed = [](double cosine) { return 1 - of_plastic(cosine); };
+  const double expected =
+      ggx_albedo(0.5, 0.5, of_plastic) + 0.5 * ggx_albedo(0.5, 0.5, passed) + 0.5 * (1 - of_plastic(0.5));
+  expect_measured(plane_in_furnace(material, 0.5), grey(expected), "half a sheet");
+}
+
+TEST(PathFurnace, a_power_lobe_beside_a_diffuse_one) {
+  for (const double nv : kCosines)
+    for (const double shininess : {0.5, 3.0, 20.0, 300.0}) {
+      Json material = {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 1}}}}};
+      material["extras"]["relook"] = {{"model", "blinn-phong"},
+                                      {"diffuse", {0.5, 0.5, 0.5}},
+                                      {"specular", {0.3, 0.3, 0.3}},
+                                      {"ambient", {0, 0, 0}},
+                                      {"shininess", shininess}};
+      expect_measured(plane_in_furnace(material, nv), grey(0.5 + 0.3 * power_albedo(nv, shininess)),
+                      name_of("shininess", nv, shininess), 2e-3);
     }
 }
 

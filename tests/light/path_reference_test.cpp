@@ -15,10 +15,11 @@ namespace {
 constexpr std::size_t kParts = 5;
 
 /// Differences with the oracle are zero but for noise.
-void expect_reference(const PathStudio& scene, const std::string& what, unsigned samples = 64) {
+void expect_reference(const PathStudio& scene, const std::string& what, unsigned samples = 64,
+                      unsigned diffuse_depth = 0) {
   const SceneState state = scene.path_state();
-  const std::vector<Vec> program = colors_of(scene.frame(samples));
-  const std::vector<PathReference::Pixel> oracle = PathReference(state.scene()).pixels(samples, 26);
+  const std::vector<Vec> program = colors_of(scene.frame(samples, 6, diffuse_depth));
+  const std::vector<PathReference::Pixel> oracle = PathReference(state.scene(), diffuse_depth).pixels(samples, 26);
   ASSERT_EQ(program.size(), oracle.size());
   std::array<std::vector<Vec>, kParts> differences, expected;
   const std::size_t width = state.scene().camera.width;
@@ -144,6 +145,19 @@ TEST(PathReference, thin_filters_and_blended_cards_before_a_window) {
   add_window(scene);
   scene.environment({{"color", {0.3, 0.3, 0.3}}});
   expect_reference(scene, "filters");
+}
+
+TEST(PathReference, diffuse_bounces_in_a_corner_of_gloss_and_glass) {
+  for (const unsigned bounces : {1U, 3U}) {
+    PathStudio scene = ball_studio(glass(1.5, 1), surface(0.3, 0.5));
+    Json wall = surface(0, 0.7);
+    wall["pbrMetallicRoughness"]["baseColorFactor"] = {0.9, 0.3, 0.2, 1};
+    scene.node("Wall", {{"mesh", scene.mesh("Wall", card_mesh(3, 2), scene.material("Wall", wall))},
+                        {"translation", {0, 2, -1.3}}});
+    add_window(scene);
+    scene.environment({{"color", {0.1, 0.2, 0.4}}});
+    expect_reference(scene, std::to_string(bounces) + " bounces", 64, bounces);
+  }
 }
 
 TEST(PathReference, facing_metals_pass_light_on_until_the_last_reflection) {

@@ -38,6 +38,41 @@ double ggx_albedo(double nv, double roughness, const Reflectance& reflectance) {
   return sum / (double{kTilts} * kTurns);
 }
 
+double rough_transmittance(double nv, double roughness, double eta) {
+  // As above: what a facet at h lets through has (1 - F) G VH / (NV NH), with G of Smith for each side.
+  constexpr int kTilts = 2048, kTurns = 256;
+  const double alpha = std::pow(std::max(roughness, 0.05), 2), a2 = alpha * alpha, vx = std::sqrt(1 - nv * nv);
+  const auto seen = [&](double c) { return 2 * c / (c + std::sqrt(c * c * (1 - a2) + a2)); };
+  double sum = 0;
+  for (int i = 0; i < kTilts; ++i) {
+    const double u = (i + 0.5) / kTilts;
+    const double nh = 1 / std::sqrt(1 + a2 * u / (1 - u)), sine = std::sqrt(1 - nh * nh);
+    for (int j = 0; j < kTurns; ++j) {
+      const double vh = sine * std::cos(2 * kPi * (j + 0.5) / kTurns) * vx + nh * nv;
+      const double behind2 = 1 - (1 - vh * vh) / (eta * eta);
+      if (vh <= 0 || behind2 <= 0) continue;
+      const double nl = nv / eta - nh * (vh / eta - std::sqrt(behind2));
+      if (nl > 0) sum += (1 - fresnel_reflectance(eta, std::min(vh, 1.0))) * seen(nv) * seen(nl) * vh / (nv * nh);
+    }
+  }
+  return sum / (double{kTilts} * kTurns);
+}
+
+double power_albedo(double nv, double shininess) {
+  constexpr int kHeights = 2048, kTurns = 256;
+  const double vx = std::sqrt(1 - nv * nv);
+  double sum = 0;
+  for (int i = 0; i < kHeights; ++i) {
+    const double nl = (i + 0.5) / kHeights, sine = std::sqrt(1 - nl * nl);
+    for (int j = 0; j < kTurns; ++j) {
+      const double turn = 2 * kPi * (j + 0.5) / kTurns;
+      const double x = sine * std::cos(turn) + vx, y = sine * std::sin(turn), z = nl + nv;
+      sum += (shininess + 8) / (8 * kPi) * std::pow(z / std::sqrt(x * x + y * y + z * z), shininess) * nl;
+    }
+  }
+  return sum * 2 * kPi / (double{kHeights} * kTurns);
+}
+
 double cloth_albedo(double nv, double roughness) {
   constexpr int kHeights = 2048, kTurns = 256;
   const double alpha = std::pow(std::max(roughness, 0.07), 2), vx = std::sqrt(1 - nv * nv);

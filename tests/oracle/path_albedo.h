@@ -15,6 +15,10 @@ using Reflectance = std::function<double(double)>;
 
 /// Of one scattering at GGX microfacets of a roughness of at least 0.05: what masking takes does not come back.
 [[nodiscard]] double ggx_albedo(double nv, double roughness, const Reflectance& reflectance);
+/// Of light that one scattering at such microfacets of a body lets through: `eta` is the index behind over that in front.
+[[nodiscard]] double rough_transmittance(double nv, double roughness, double eta);
+/// Of Blinn and Phong's lobe, (n + 8) / (8 pi) (N.H)^n.
+[[nodiscard]] double power_albedo(double nv, double shininess);
 /// Of a white sheen.
 [[nodiscard]] double cloth_albedo(double nv, double roughness);
 

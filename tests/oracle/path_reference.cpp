@@ -60,8 +60,8 @@ std::optional<double> crossing(const Light& light, const Vec& origin, const Vec&
 
 }  // namespace
 
-PathReference::PathReference(const Scene& scene, unsigned max_depth, unsigned glossy_depth)
-    : scene_(scene), max_depth_(max_depth), glossy_depth_(glossy_depth) {
+PathReference::PathReference(const Scene& scene, unsigned diffuse_depth, unsigned max_depth, unsigned glossy_depth)
+    : scene_(scene), diffuse_depth_(diffuse_depth), max_depth_(max_depth), glossy_depth_(glossy_depth) {
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].alive) continue;
     for (const WorldTriangle& triangle : world_triangles(scene, i)) triangles_.push_back(triangle);
@@ -118,6 +118,7 @@ PathReference::Surface PathReference::surface_at(const Found& found, const Vec& 
   s.view = -way;
   s.nv = std::max(s.n.dot(s.view), 1e-4);
   s.alpha = std::max(std::pow(std::max(double{s.material->roughness}, 0.05), 2), floor);
+  s.blur_alpha = std::pow(std::max(double{s.material->roughness}, 0.05), 2);
   s.coat_alpha = std::max(std::pow(std::max(double{s.material->clearcoat_roughness}, 0.05), 2), floor);
   return s;
 }
@@ -164,7 +165,7 @@ Vec PathReference::crossed(const Ray& ray, double end) const {
   return sum;
 }
 
-Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind, Random& random) const {
+Vec PathReference::of_light(const Light& light, const Surface& s, const Ray& ray, Random& random) const {
   Vec way, arriving;  // radiance over the density of the sample, or irradiance
   double distance = 1e30;
   if (light.kind == LightKind::suns) return kBlack;
@@ -212,12 +213,19 @@ Vec PathReference::of_light(const Light& light, const Surface& s, bool is_behind
     way = to.normalized();
     distance = to.length();
     arriving = color_of(light.color) * (light.intensity * share_of(light, s.p) /
-                                        std::max(to.length2(), is_behind ? 1e-4 : 1e-8));
+                                        std::max(to.length2(), ray.from != nullptr ? 1e-4 : 1e-8));
   } else {
     way = -Vec(light.direction);
     arriving = color_of(light.color) * double{light.intensity};
   }
-  if (s.n.dot(way) <= 0) return kBlack;
+  if (s.n.dot(way) <= 0) {
+    // Unless what sent the ray has the same light by a segment of its own.
+    const bool is_let_through = is_sized ? (ray.is_eye || ray.meets_lights) && Surface::is_wide(s.blur_alpha)
+                                         : !ray.has_lamps;
+    if (s.optics.volume || !is_let_through || s.ng.dot(way) >= 0) return kBlack;
+    const Vec light_there = s.through(way) * arriving;
+    return is_black(light_there) ? kBlack : light_there * passed(s.p - s.ng * kOffset, way, distance, is_sized);
+  }
   Vec value = s.diffuse(way);
   if (!is_sized || Surface::is_wide(s.alpha)) value += s.specular(way);
   if (!is_sized || Surface::is_wide(s.coat_alpha)) value += s.coating(way);
@@ -232,16 +240,17 @@ Vec PathReference::gathered(const Surface& s, const Ray& ray, Random& random) co
   if (s.is_interface()) return sum;
   const ObjectId object(static_cast<std::uint32_t>(s.object - scene_.objects.data()));
   for (const LightId id : scene_.light_order)
-    if (!scene_.light(id).excludes(object)) sum += of_light(scene_.light(id), s, ray.from != nullptr, random);
+    if (!scene_.light(id).excludes(object)) sum += of_light(scene_.light(id), s, ray, random);
   return sum;
 }
 
 Vec PathReference::scattered(const Surface& s, const Ray& ray, Random& random) const {
-  enum class Kind { diffuse, specular, coat };
+  enum class Kind { diffuse, specular, coat, through };
   std::vector<Kind> kinds;
   if (!s.is_interface()) kinds.push_back(Kind::diffuse);
   kinds.push_back(Kind::specular);
   if (s.coat() > 0) kinds.push_back(Kind::coat);
+  if (s.blurs()) kinds.push_back(Kind::through);
   const Kind kind = kinds[static_cast<std::size_t>(number(random) * static_cast<double>(kinds.size()))];
   const double u = number(random), turn = 2 * kPi * number(random);
   Ray next = ray;
@@ -249,36 +258,54 @@ Vec PathReference::scattered(const Surface& s, const Ray& ray, Random& random) c
   if (ray.from == nullptr) next.straight = 0;
   next.from = s.object;
   next.is_eye = false;
+  next.has_lamps = !s.is_interface();
   Vec weight;
   double alpha = 1;
   if (kind == Kind::diffuse) {
     next.way = tilted(s.n, std::sqrt(u), turn);
     weight = s.diffuse(next.way) * (kPi / std::max(s.n.dot(next.way), 1e-12));
     next.floor = std::max(ray.floor, 0.25);
-    next.gathers = true;
+    ++next.diffuse;
+    next.gathers = next.diffuse > diffuse_depth_ || ray.generation >= max_depth_;
     next.meets_lights = false;
   } else {
-    alpha = kind == Kind::coat ? s.coat_alpha : s.alpha;
+    const bool is_through = kind == Kind::through;
+    alpha = is_through ? s.blur_alpha : kind == Kind::coat ? s.coat_alpha : s.alpha;
     const double nh = 1 / std::sqrt(1 + alpha * alpha * u / (1 - u)), sine2 = 1 - nh * nh;
     const Vec h = tilted(s.n, nh, turn);
     const double vh = s.view.dot(h);
     if (vh <= 0) return kBlack;
     next.way = (h * (2 * vh) - s.view).normalized();
+    double bent = 1 / (4 * vh);  // solid angle of half vectors over that of ways
+    if (is_through && s.optics.volume) {
+      const double inner = 1 - (1 - vh * vh) / (s.eta() * s.eta());
+      if (inner <= 0) return kBlack;
+      next.way = (h * (vh / s.eta() - std::sqrt(inner)) - s.view / s.eta()).normalized();
+      bent = s.eta() * s.eta() * -next.way.dot(h) / (s.view + next.way * s.eta()).length2();
+    } else if (is_through) {
+      next.way -= s.n * (2 * s.n.dot(next.way));
+    }
     const double d = nh * nh * alpha * alpha + sine2;
-    const double density = alpha * alpha / (kPi * d * d) * nh / (4 * vh);
-    weight = (kind == Kind::coat ? s.coating(next.way) : s.specular(next.way)) / density;
+    const double density = alpha * alpha / (kPi * d * d) * nh * bent;
+    weight = (is_through ? s.through(next.way) : kind == Kind::coat ? s.coating(next.way) : s.specular(next.way)) / density;
     const double bucket = std::exp2(std::min(std::floor(std::log2(alpha)), -1.0));  // its lower end
     next.floor = std::max(ray.floor, std::min(bucket, 0.25));
-    ++next.glossy;
+    next.glossy += is_through ? 0 : 1;
     next.gathers = next.glossy > glossy_depth_ || ray.generation >= max_depth_;
-    next.meets_lights = !Surface::is_wide(alpha) || s.is_interface();
+    const bool is_sampled = is_through ? !s.optics.volume : !s.is_interface();
+    next.meets_lights = !Surface::is_wide(alpha) || !is_sampled;
+    if (is_through) {
+      next.meets_lights = next.meets_lights && (ray.is_eye || ray.meets_lights);
+      next.has_lamps = ray.has_lamps || is_sampled;
+    }
   }
-  if (s.optics.refracts && s.optics.counts_in_cutoff)
+  if (kind == Kind::specular && s.optics.refracts && s.optics.counts_in_cutoff)
     next.fresnel *= exact_reflectance(std::min(s.inside ? std::max(s.nv, s.ng.dot(s.view)) : s.nv, 1.0),
                                       s.is_interface() ? 1 / s.optics.ior : s.optics.ior);
-  if (next.way.dot(s.ng) <= 0 || is_black(weight) || next.fresnel < 1e-3) return kBlack;
-  next.origin = s.p + s.ng * kOffset;
-  next.within = s.is_interface() ? s.material : nullptr;
+  const double side = kind == Kind::through ? -1 : 1;
+  if (next.way.dot(s.ng) * side <= 0 || is_black(weight) || next.fresnel < 1e-3) return kBlack;
+  next.origin = s.p + s.ng * (side * kOffset);
+  next.within = s.optics.volume && s.inside == (side > 0) ? s.material : nullptr;
   return weight * static_cast<double>(kinds.size()) * radiance(next, random);
 }
 
@@ -323,7 +350,7 @@ Vec PathReference::radiance(const Ray& ray, Random& random) const {
     if (ray.is_eye || ray.meets_lights)
       own += color_of(material.emissive) * (material.emissive_strength * s.below_coat());
     if (!ray.gathers) own += gathered(s, ray, random) + scattered(s, ray, random);
-    own += refracted(s, ray, random);
+    if (!s.blurs() || ray.gathers) own += refracted(s, ray, random);
   }
   sum += own * coverage;
   if (coverage < 1 && ray.straight < 16) {

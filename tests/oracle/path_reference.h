@@ -14,7 +14,7 @@ namespace relook {
 
 class PathReference {
  public:
-  explicit PathReference(const Scene& scene, unsigned max_depth = 6, unsigned glossy_depth = 4);
+  explicit PathReference(const Scene& scene, unsigned diffuse_depth = 0, unsigned max_depth = 6, unsigned glossy_depth = 4);
 
   struct Pixel {
     Vec mean{0, 0, 0};
@@ -26,7 +26,7 @@ class PathReference {
  private:
   struct Ray {
     Vec origin, way;
-    unsigned generation = 1, glossy = 0;
+    unsigned generation = 1, glossy = 0, diffuse = 0;
     unsigned straight = 0;  // rays by coverage, the eye's or those behind the first scattering
     double fresnel = 1, floor = 0;
     const Object* from = nullptr;      // that scattered it last
@@ -34,6 +34,7 @@ class PathReference {
     bool is_eye = true;                // nothing has turned it
     bool meets_lights = true;          // its lobe is narrow, or none sent it
     bool gathers = false;
+    bool has_lamps = false;            // segments of what sent it reach lamps through all that transmits
   };
   struct Found {
     const WorldTriangle* triangle = nullptr;
@@ -53,12 +54,12 @@ class PathReference {
   [[nodiscard]] Vec surroundings(const Ray& ray) const;
   [[nodiscard]] Vec crossed(const Ray& ray, double end) const;
   [[nodiscard]] Vec gathered(const Surface& s, const Ray& ray, Random& random) const;
-  [[nodiscard]] Vec of_light(const Light& light, const Surface& s, bool is_behind, Random& random) const;
+  [[nodiscard]] Vec of_light(const Light& light, const Surface& s, const Ray& ray, Random& random) const;
   [[nodiscard]] Vec scattered(const Surface& s, const Ray& ray, Random& random) const;
   [[nodiscard]] Vec refracted(const Surface& s, const Ray& ray, Random& random) const;
 
   const Scene& scene_;
-  unsigned max_depth_, glossy_depth_;
+  unsigned diffuse_depth_, max_depth_, glossy_depth_;
   std::vector<WorldTriangle> triangles_;
 };
 

@@ -83,6 +83,31 @@ Vec PathReference::Surface::coating(const Vec& way) const {
   return {value, value, value};
 }
 
+bool PathReference::Surface::blurs() const {
+  return optics.refracts && material->roughness >= 0.0625F && (!optics.volume || material->ior >= 1.015625F);
+}
+
+Vec PathReference::Surface::through(const Vec& way) const {
+  if (!blurs() || n.dot(way) >= 0) return Vec(0, 0, 0);
+  double vh, value;
+  if (optics.volume) {
+    const Vec sum = view + way * eta(), h = sum.normalized() * (eta() > 1 ? -1.0 : 1.0);
+    vh = view.dot(h);
+    const double lh = -way.dot(h), nl = -n.dot(way), nh = n.dot(h);
+    if (vh <= 0 || lh <= 0 || nh <= 0) return Vec(0, 0, 0);
+    const double a2 = blur_alpha * blur_alpha, d = nh * nh * a2 + (h - n * nh).length2();
+    const auto seen = [&](double c) { return 2 * c / (c + std::sqrt(c * c * (1 - a2) + a2)); };
+    value = a2 / (kPi * d * d) * seen(nv) * seen(nl) * vh / nv * eta() * eta() * lh / sum.length2();
+  } else {
+    const Vec up = way - n * (2 * n.dot(way));
+    vh = std::max(view.dot((view + up).normalized()), 0.0);
+    value = ggx(n, view, nv, up, blur_alpha);
+  }
+  const Vec tinted = is_interface() ? Vec(1, 1, 1) : base();
+  return tinted * ((1.0 - material->metallic) * material->transmission * value * (1 - largest(dielectric(vh))) *
+                   below_coat());
+}
+
 Vec PathReference::Surface::tint(double inside_length) const {
   const double rest = 1 - coverage();
   if (!optics.passes_light) return Vec(rest, rest, rest);

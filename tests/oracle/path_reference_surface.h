@@ -12,6 +12,7 @@ struct PathReference::Surface {
   Vec p, ng, n, view;
   Vec lift;  // to the smooth surface, as segments leave it at the horizon
   double nv, alpha, coat_alpha;
+  double blur_alpha;  // of what is let through: as the material says
 
   [[nodiscard]] bool is_interface() const { return optics.volume && inside; }
   [[nodiscard]] Vec base() const { return {material->base_color.r, material->base_color.g, material->base_color.b}; }
@@ -32,6 +33,11 @@ struct PathReference::Surface {
   [[nodiscard]] Vec diffuse(const Vec& way) const;
   [[nodiscard]] Vec specular(const Vec& way) const;
   [[nodiscard]] Vec coating(const Vec& way) const;
+  /// Is what goes through scattered? Of light from the other side, then, likewise.
+  [[nodiscard]] bool blurs() const;
+  [[nodiscard]] Vec through(const Vec& way) const;
+  /// Index behind over index in front.
+  [[nodiscard]] double eta() const { return inside ? 1.0 / optics.ior : double{optics.ior}; }
 
   [[nodiscard]] static bool is_wide(double alpha) { return alpha >= 0.25; }
   /// What a segment along a way meets of it as a filter.

@@ -59,17 +59,19 @@ SceneState PathStudio::path_state() const {
   return path;
 }
 
-Frame PathStudio::frame(std::uint32_t samples, std::uint32_t max_depth) const {
+Frame PathStudio::frame(std::uint32_t samples, std::uint32_t max_depth, std::uint32_t diffuse_depth) const {
   ViewOptions view;
   view.samples = samples;
   view.max_depth = max_depth;
+  view.diffuse_depth = diffuse_depth;
   view.integrator = Integrator::path;
   return rendered(path_state().scene(), view);
 }
 
-Measured PathStudio::seen(Point eye, Point target, std::uint32_t samples, std::uint32_t max_depth) {
+Measured PathStudio::seen(Point eye, Point target, std::uint32_t samples, std::uint32_t max_depth,
+                          std::uint32_t diffuse_depth) {
   look_at(eye, target, 0.02F, 16, 16);
-  return measured(colors_of(frame(samples, max_depth)));
+  return measured(colors_of(frame(samples, max_depth, diffuse_depth)));
 }
 
 void add_white_sky(SceneBuilder& scene) { scene.environment({{"color", {1, 1, 1}}}); }

@@ -36,9 +36,10 @@ class PathStudio : public SceneBuilder {
   void sky_image(const std::string& name);
 
   [[nodiscard]] SceneState path_state() const;
-  [[nodiscard]] Frame frame(std::uint32_t samples, std::uint32_t max_depth = 6) const;
+  [[nodiscard]] Frame frame(std::uint32_t samples, std::uint32_t max_depth = 6, std::uint32_t diffuse_depth = 0) const;
   /// Of 16 x 16 pixels that all show what the ray from `eye` to `target` brings.
-  [[nodiscard]] Measured seen(Point eye, Point target, std::uint32_t samples = 64, std::uint32_t max_depth = 6);
+  [[nodiscard]] Measured seen(Point eye, Point target, std::uint32_t samples = 64, std::uint32_t max_depth = 6,
+                              std::uint32_t diffuse_depth = 0);
 
  private:
   Json edits_ = Json::array();

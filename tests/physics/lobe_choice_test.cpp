@@ -73,6 +73,21 @@ TEST(LobeChoice, AFlooredRoughnessLiesInTheBucketOfItsFloor) {
   EXPECT_EQ(floored(0.0F, 0.0F), 0);
 }
 
+TEST(LobeChoice, BucketsOfShininessDoubleAtTheirBorders) {
+  for (int k = 0; k < 14; ++k) {
+    const float lower = std::ldexp(1.0F, k);
+    EXPECT_EQ(bucket_of_shininess(lower).k, k);
+    EXPECT_EQ(bucket_of_shininess(lower).representative(), lower);
+    EXPECT_EQ(bucket_of_shininess(std::nextafter(lower, 0.0F)).k, k - 1);
+    // 2 / (n + 2) of the upper end.
+    EXPECT_EQ(bucket_of_shininess(lower).as_alpha(), bucket_of_alpha(std::sqrt(1 / (lower + 1))));
+  }
+  EXPECT_EQ(bucket_of_shininess(0).representative(), 0);
+  EXPECT_EQ(floored_shininess(1000.0F, 0.0F), 1000);
+  EXPECT_EQ(floored_shininess(1000.0F, 0.25F), 30);
+  EXPECT_EQ(floored_shininess(3.0F, 0.25F), 3);
+}
+
 TEST(LobeChoice, BucketsOfMetallicAreThree) {
   EXPECT_EQ(bucket_of_metallic(0), MetallicBucket::dielectric);
   EXPECT_EQ(bucket_of_metallic(0.0156F), MetallicBucket::dielectric);
@@ -84,18 +99,18 @@ TEST(LobeChoice, BucketsOfMetallicAreThree) {
 
 template <class F>
 void for_each_shares(const F& f) {
-  for (int bits = 1; bits < 8; ++bits)
+  for (int bits = 1; bits < 16; ++bits)
     for (const MetallicBucket metallic : {MetallicBucket::dielectric, MetallicBucket::mixed, MetallicBucket::metal})
       for (const float reflectance : {0.0F, 0.04F, 0.3F, 0.9F, 1.0F})
         for (const float coat : {0.04F, 0.5F, 1.0F}) {
-          const LobeSet lobes{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0};
+          const LobeSet lobes{(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0};
           f(lobes, lobe_shares(lobes, metallic, reflectance, coat));
         }
 }
 
 TEST(LobeChoice, SharesAreAtLeastATenthAndSumToOne) {
   for_each_shares([](const LobeSet& lobes, const LobeShares& shares) {
-    EXPECT_NEAR(shares.diffuse + shares.specular + shares.coat, 1, 2e-7F);
+    EXPECT_NEAR(shares.diffuse + shares.specular + shares.coat + shares.transmission, 1, 3e-7F);
     const auto expect_share = [](bool is_there, float share) {
       if (is_there) {
         EXPECT_GE(share, kLeastShare - 2e-7F);
@@ -106,6 +121,7 @@ TEST(LobeChoice, SharesAreAtLeastATenthAndSumToOne) {
     expect_share(lobes.diffuse, shares.diffuse);
     expect_share(lobes.specular, shares.specular);
     expect_share(lobes.coat, shares.coat);
+    expect_share(lobes.transmission, shares.transmission);
   });
   const LobeShares none = lobe_shares({false, false, false}, MetallicBucket::mixed, 0.5F, 0.5F);
   EXPECT_EQ(none.diffuse + none.specular + none.coat, 0);
@@ -121,20 +137,27 @@ TEST(LobeChoice, SharesFollowWhatIsReflected) {
   EXPECT_NEAR(lobe_shares(both, MetallicBucket::metal, 0.04F, 0).specular, 0.9, 1e-6);
   EXPECT_EQ(lobe_shares({false, true, false}, MetallicBucket::dielectric, 0.04F, 0).specular, 1);
   EXPECT_NEAR(lobe_shares({true, true, true}, MetallicBucket::mixed, 0.04F, 1).coat, 0.8, 1e-6);
+  // All of what a body of glass does not reflect goes through.
+  const LobeShares glass = lobe_shares({false, true, false, true}, MetallicBucket::dielectric, 0.3F, 0);
+  EXPECT_NEAR(glass.specular, 0.3, 1e-6);
+  EXPECT_NEAR(glass.transmission, 0.7, 1e-6);
+  const LobeShares milky = lobe_shares({true, true, false, true}, MetallicBucket::dielectric, 0.3F, 0);
+  EXPECT_NEAR(milky.diffuse, 0.35, 1e-6);
+  EXPECT_NEAR(milky.transmission, 0.35, 1e-6);
 }
 
 TEST(LobeChoice, LobesAreChosenAsOftenAsTheirSharesSay) {
   for_each_shares([](const LobeSet&, const LobeShares& shares) {
     constexpr int kSteps = 2000;
-    std::array<int, 3> found{};
-    std::array<double, 3> sums{};
+    std::array<int, 4> found{};
+    std::array<double, 4> sums{};
     for (int i = 0; i < kSteps; ++i) {
       const LobeChoice choice = chosen_lobe(shares, (static_cast<float>(i) + 0.5F) / kSteps);
       ASSERT_TRUE(choice.u >= 0 && choice.u < 1);
       ++found[static_cast<std::size_t>(choice.lobe)];
       sums[static_cast<std::size_t>(choice.lobe)] += double{choice.u};
     }
-    for (const Lobe lobe : {Lobe::diffuse, Lobe::specular, Lobe::coat}) {
+    for (const Lobe lobe : {Lobe::diffuse, Lobe::specular, Lobe::coat, Lobe::transmission}) {
       const int count = found[static_cast<std::size_t>(lobe)];
       EXPECT_NEAR(static_cast<float>(count) / kSteps, shares.of(lobe), 1.01F / kSteps);
       // What is left of the number is spread evenly.

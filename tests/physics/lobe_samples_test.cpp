@@ -228,16 +228,36 @@ TEST(LobeSamples, NeighboursInTheSquareStayNeighbours) {
     }
 }
 
-TEST(LobeSamples, SheenByCosinesReflectsItsAlbedo) {
+TEST(LobeSamples, EvenDirectionsCoverTheHemisphere) {
+  // Of directions that are even over the hemisphere the height is even over [0, 1].
+  constexpr int kSamples = 100000, kSide = 8;
+  std::array<int, kSide * kSide> found{};
+  Points points(4);
+  for (int i = 0; i < kSamples; ++i) {
+    const Direction way = even_direction(points.next());
+    ASSERT_NEAR(way.dot(way), 1, 1e-5F);
+    const double around = std::atan2(double{way.y}, double{way.x}) / (2 * kPi) + 0.5;
+    const int row = std::min(static_cast<int>(way.z * kSide), kSide - 1);
+    const int column = std::min(static_cast<int>(around * kSide), kSide - 1);
+    ++found[static_cast<std::size_t>(row * kSide + column)];
+  }
+  const double expected = double{kSamples} / (kSide * kSide);
+  double chi2 = 0;
+  for (const int count : found) chi2 += (count - expected) * (count - expected) / expected;
+  EXPECT_LT(chi2, kSide * kSide + 5 * std::sqrt(2.0 * kSide * kSide));
+}
+
+TEST(LobeSamples, SheenReflectsItsAlbedo) {
   for (const float roughness : {0.2F, 0.6F, 1.0F})
     for (const float nv : {0.9F, 0.5F, 0.2F}) {
       const Direction view = narrow(view_at(double{nv}, 0));
       Points points(11);
       Mean mean;
       for (int i = 0; i < 40000; ++i) {
-        const Direction way = cosine_direction(points.next());
+        const DiffuseDirections cloth{true};
+        const Direction way = cloth.sample(points.next());
         const float nh = min(normalized(view + way).z, 1.0F);
-        mean.add(double{sheen(inverse_sheen_alpha(roughness), nh, way.z, nv) * way.z / cosine_density(way.z)});
+        mean.add(double{sheen(inverse_sheen_alpha(roughness), nh, way.z, nv) * way.z / cloth.density(way.z)});
       }
       // The table has ten columns, and clamps.
       EXPECT_NEAR(std::min(mean.value(), 1.0), double{sheen_albedo(nv, roughness)}, mean.five_sigma() + 0.02)

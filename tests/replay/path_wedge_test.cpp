@@ -32,7 +32,9 @@ class PathWedge : public testing::TestWithParam<Wedge> {};
 TEST_P(PathWedge, EveryValueGivesAFullRender) {
   const Wedge& wedge = GetParam();
   const std::string pointer = std::string("/materials/") + wedge.pointer;
-  Replayer replayer = path_replayer(test_scene(wedge.scene, 28, 21), path_view(3));
+  ViewOptions view = path_view(3);
+  view.diffuse_depth = 1;
+  Replayer replayer = path_replayer(test_scene(wedge.scene, 28, 21), view);
   std::vector<double> values = wedge.values;
   values.insert(values.end(), wedge.values.rbegin() + 1, wedge.values.rend());
   std::vector<Frame> frames;
@@ -58,6 +60,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wedge{"roughness_with_a_texture", "Coated/pbrMetallicRoughness/roughnessFactor", kRoughness},
         Wedge{"roughness_of_blended", "Veil/pbrMetallicRoughness/roughnessFactor", kRoughness},
         Wedge{"roughness_under_bumps", "Matte/pbrMetallicRoughness/roughnessFactor", kRoughness, TestScene::study},
+        Wedge{"roughness_of_glass", "Glass/pbrMetallicRoughness/roughnessFactor", kRoughness},
+        Wedge{"roughness_of_a_pane", "Pane/pbrMetallicRoughness/roughnessFactor", kRoughness},
         Wedge{"metallic_of_metal", "Mirror/pbrMetallicRoughness/metallicFactor", kShares},
         Wedge{"metallic_of_plastic", "Matte/pbrMetallicRoughness/metallicFactor", kShares},
         Wedge{"metallic_with_a_texture", "Coated/pbrMetallicRoughness/metallicFactor", kShares},
@@ -72,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wedge{"alpha", "Veil/pbrMetallicRoughness/baseColorFactor/3", kShares},
         Wedge{"alpha_of_cards", "Mirror/pbrMetallicRoughness/baseColorFactor/3", kShares, TestScene::cards},
         Wedge{"bumps", "Coated/normalTexture/scale", {0, 0.2, 0.6, 1, 1.8}},
-        Wedge{"shininess", "Phong/extras/relook/shininess", {1, 3, 8, 20, 60, 300}},
+        Wedge{"shininess", "Phong/extras/relook/shininess", {0, 1, 3, 7.9, 8, 20, 31, 32, 60, 300}},
         Wedge{"reflection", "Phong/extras/relook/reflection", {0, 0.01, 0.3, 0.7, 1}}),
     [](const testing::TestParamInfo<Wedge>& wedge) { return std::string(wedge.param.name); });
 

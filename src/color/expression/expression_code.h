@@ -63,7 +63,7 @@ enum class Input : std::uint8_t {
   alpha_floor,      // least alpha of reflecting lobes
   cosine,           // of a filter: of the shadow segment with the geometric normal
   light_direction,  // by axis: unit, towards the sample of the light at hand
-  light_weight,     // by axis: of diffuse, specular and coat lobe
+  light_weight,     // by axis: of diffuse, specular, coat and transmitted lobe
   light_radiance,   // by axis: channel; of that sample at unit colour and intensity
 };
 

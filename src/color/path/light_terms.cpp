@@ -14,16 +14,19 @@ namespace {
 /// Lamps without a size are gathered as if no nearer than this behind a scattering, metres squared.
 constexpr float kLeastDistance2 = 1e-4F;
 
-bool has_volume_on(const ColorScene& scene, const TreeBlock& block, const LightLink& link) {
-  for (std::uint32_t f = 0; f < link.filters; ++f)
-    if (scene.object(block.filters[link.first + f].object).optics.bent) return true;
+/// Does a ray along the segment leave it, bent or blurred?
+bool is_turned_on(const ColorScene& scene, const TreeBlock& block, const LightLink& link) {
+  for (std::uint32_t f = 0; f < link.filters; ++f) {
+    const RayObject& object = scene.object(block.filters[link.first + f].object);
+    if (object.optics.bent || object.blurs) return true;
+  }
   return false;
 }
 
 /// Of a lamp without a size: it reaches every lobe.
 std::optional<LightTerm> lamp_term(const RayNode& node, const RayLight& ray_light, const Light& light) {
   LightTerm term;
-  term.weights = {1, 1, 1};
+  term.weights = {1, 1, 1, 1};
   float share = lamp_share(light, node.point.position) / sample_rate(ray_light, node);
   if (traits_of(light.kind).has_place) {
     const Direction way = ray_light.position - node.point.position;
@@ -72,20 +75,26 @@ std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& bl
     term->way = sample->way;
     term->radiance = radiance_of(ray_light, *sample) * lamp_share(light, node.point.position);
     const VertexLobes& lobes = block.lobes[node.lobes];
-    const bool through_volume = has_volume_on(scene, block, link);
-    // No ray of a lobe leads below the triangle; samples may, where the smooth surface is lit.
-    const bool lobes_reach = sample->way.dot(node.point.geometric) > 0;
-    constexpr std::array kLobes{Lobe::diffuse, Lobe::specular, Lobe::coat};
+    const bool is_turned = is_turned_on(scene, block, link);
+    // No ray of a reflecting lobe leads below the triangle; samples may, where the smooth surface is lit.
+    const bool is_above = sample->way.dot(node.point.geometric) > 0;
+    constexpr std::array kLobes{Lobe::diffuse, Lobe::specular, Lobe::coat, Lobe::transmission};
     for (std::size_t k = 0; k < kLobes.size(); ++k) {
-      const float other = lobes_reach ? lobes.density(kLobes[k], sample->way) : 0.0F;
-      // Through volumes either the samples or the rays bring the light, as the lobe is wide or narrow.
-      if (through_volume)
+      const bool is_reached = is_above != (kLobes[k] == Lobe::transmission);
+      const float other = is_reached ? lobes.density(kLobes[k], sample->way) : 0.0F;
+      // Where rays are turned either the samples or the rays bring the light, as the lobe is wide or narrow.
+      if (is_turned)
         term->weights[k] = lobes.is_wide(kLobes[k]) ? 1 / sample->density : 0.0F;
       else
         term->weights[k] = weight_of(sample->density, other) / sample->density;
     }
   }
   if (!term) return std::nullopt;
+  // Light from behind the smooth surface is let through, other light reflected.
+  if (node.has_back && !(term->way.dot(node.point.shading) > 0))
+    term->weights = {0, 0, 0, term->weights[3]};
+  else
+    term->weights[3] = 0;
   term->node = index;
   term->light = place;
   return term;

@@ -23,6 +23,7 @@ struct PathKey {
   bool inside = false, vertex_colors = false;
   bool interface_only = false;  // the inner side of a volume
   bool gathers = false;         // surface: what it scatters does not count
+  bool blurs = false;           // what goes through is scattered by a lobe
   BranchSet children;           // surface
   auto operator<=>(const PathKey&) const = default;
 };

@@ -41,7 +41,7 @@ struct LightTerm {
   std::uint32_t node = 0;   // of the block
   std::uint32_t light = 0;  // place in the light order
   Direction way;            // unit, to the sample
-  std::array<float, 3> weights{};  // of diffuse, specular and coat lobe
+  std::array<float, 4> weights{};  // of diffuse, specular, coat and transmitted lobe
   Color radiance;                  // at unit colour and intensity
 };
 

@@ -14,7 +14,7 @@ namespace {
 std::uint64_t signature_of(const PathKey& key) {
   return std::uint64_t{key.material.index()} << 32 | std::uint64_t{key.children.bits()} << 8 |
          (key.inside ? 1U : 0U) | (key.vertex_colors ? 2U : 0U) | (key.interface_only ? 4U : 0U) |
-         (key.gathers ? 8U : 0U) | static_cast<unsigned>(key.piece) << 4;
+         (key.gathers ? 8U : 0U) | static_cast<unsigned>(key.piece) << 4 | (key.blurs ? 128U : 0U);
 }
 
 /// What the program of a hit says of it, beside its branches.
@@ -91,6 +91,7 @@ struct PathShader::Impl {
     key.inside = inside;
     key.vertex_colors = !object.mesh->colors.empty();
     key.interface_only = object.optics.volume && inside;
+    key.blurs = object.blurs;
     return key;
   }
   std::uint32_t number_of(const PathKey& key) {

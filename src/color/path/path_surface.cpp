@@ -12,6 +12,7 @@
 #include "physics/lobe_angles.h"
 #include "physics/lobe_buckets.h"
 #include "physics/phong.h"
+#include "physics/rough_refraction.h"
 #include "physics/sheen.h"
 
 namespace relook {
@@ -19,11 +20,28 @@ namespace {
 
 /// What the lobes of a surface make of light from one direction, times the cosine there, each with what lies above it.
 struct LobeValues {
-  Triple diffuse, specular, coat;
+  Triple diffuse, specular, coat, transmission;
 };
 
 /// The roughness of a reflecting lobe behind other bounces.
 Scalar floored_roughness(SurfaceTerms& t, Scalar roughness) { return floored(roughness, t.input(Input::alpha_floor)); }
+
+Triple child_direction(SurfaceTerms& t, Branch branch) {
+  return t.input3(Input::child_direction, static_cast<std::uint32_t>(branch));
+}
+Scalar child_share(SurfaceTerms& t, Branch branch) {
+  return t.input(Input::child_share, 0, static_cast<std::uint32_t>(branch));
+}
+Triple proportion(SurfaceTerms& t, Field field) {
+  const Scalar share = t.field(field);
+  return {share, share, share};
+}
+/// The light that comes through a branch, before coverage. Columns that a surface has for one channel are made for
+/// each (KHR_materials_dispersion).
+struct ScatteredColumns {
+  std::vector<Triple> weights;  // of `children`, without that of transparency
+  Triple emission, ambient;
+};
 
 /// Metallic-roughness in its layers, from below: base, sheen, emission, coat.
 class LayeredSurface {
@@ -32,6 +50,7 @@ class LayeredSurface {
       : t_(terms),
         is_inside_(key.inside),
         is_interface_(key.interface_only),
+        is_blurred_(key.blurs && !key.gathers),
         base_(t_.base_color()),
         metallic_(t_.textured(Field::metallic, Slot::metallic_roughness, 2)),
         normal_(t_.normal(Slot::normal, Field::normal_scale)),
@@ -53,7 +72,8 @@ class LayeredSurface {
     const LobeAngles<Triple> at = lobe_angles(normal_, view_, direction);
     const Scalar weight = weight_at(at.vh);
     const Triple mirror = reflectance_.mixed(reflectance_.dielectric(weight, at.vh), weight, at.vh);
-    LobeValues values{t_.grey(0), mirror * (specular_.precise_value(at, normal_, direction, view_, nv_) * at.nl), t_.grey(0)};
+    LobeValues values{t_.grey(0), mirror * (specular_.precise_value(at, normal_, direction, view_, nv_) * at.nl),
+                      t_.grey(0), t_.grey(0)};
     if (!is_interface_) values.diffuse = diffuse_.value(entered_) * at.nl;
     if (sheen_) {
       const Scalar cloth = sheen(sheen_->inverse_alpha, at.nh, at.nl, nv_) * at.nl;
@@ -68,16 +88,16 @@ class LayeredSurface {
       values.specular = values.specular * coat_->passed;
       values.coat = {value, value, value};
     }
+    if (is_blurred_ && !is_volume_) values.transmission = let_through(mirrored_through(direction));
     return values;
   }
 
-  /// The weight of a refracted ray.
+  /// The weight of a refracted ray: of its one way, or, blurred, of a direction of its lobe.
   [[nodiscard]] Triple refracted_weight() {
-    const Scalar share = (1.0F - metallic_) * diffuse_.transmission * entered_;
-    Triple weight{share, share, share};
-    if (!is_volume_ || !is_inside_) weight = weight * base_;  // a volume tints once, where it is entered
-    if (is_volume_ && !is_inside_) weight = weight * t_.beer(child_length(t_.refraction()));
-    return weight * below(true);
+    if (!is_blurred_) return let_through(entered_);
+    const Triple way = child_direction(t_, t_.refraction());
+    const Scalar value = is_volume_ ? refracted_through(way) : mirrored_through(way);
+    return let_through(value) * child_share(t_, t_.refraction());
   }
   /// Beer's law along a ray that is reflected inside a volume.
   [[nodiscard]] Triple within(const Triple& weight) {
@@ -120,6 +140,36 @@ class LayeredSurface {
                  1.0F - strength * coat_reflectance(schlick(nv))};
   }
 
+  /// A share of the light that reaches the base, as it is let through: into a volume along the refracted ray.
+  [[nodiscard]] Triple let_through(Scalar share) {
+    const Scalar all = (1.0F - metallic_) * diffuse_.transmission * share;
+    Triple weight{all, all, all};
+    if (!is_volume_ || !is_inside_) weight = weight * base_;  // a volume tints once, where it is entered
+    if (is_volume_ && !is_inside_) weight = weight * t_.beer(child_length(t_.refraction()));
+    return weight * below(true);
+  }
+  /// Of a thin surface: what would be reflected on the other side, less what each microfacet reflects; with the cosine.
+  [[nodiscard]] Scalar mirrored_through(const Triple& way) {
+    const Triple up = way - normal_ * (dot(normal_, way) * 2.0F);
+    const LobeAngles<Triple> at = lobe_angles(normal_, view_, up);
+    return precise_ggx(blur_alpha2(), at.nh, half_sine2(normal_, at), at.nl, nv_) * at.nl * passed(at.vh);
+  }
+  /// Of a volume, likewise refracted.
+  [[nodiscard]] Scalar refracted_through(const Triple& way) {
+    const Scalar ior = max(t_.ior(), 1.0F);
+    const Scalar eta = is_inside_ ? 1.0F / ior : ior;
+    const RefractedAngles<Triple> at = refracted_angles(normal_, view_, way, eta, !is_inside_);
+    const Triple flat = at.half - normal_ * at.nh;
+    return rough_refraction(blur_alpha2(), at, dot(flat, flat), nv_, eta) * passed(at.vh);
+  }
+  /// What microfacets at this cosine with the view do not reflect.
+  [[nodiscard]] Scalar passed(Scalar cosine) {
+    return reflectance_.entered(reflectance_.dielectric(weight_at(cosine), cosine));
+  }
+  /// What scattered before does not widen what is let through.
+  [[nodiscard]] Scalar blur_alpha2() {
+    return square(alpha_of(t_.textured(Field::roughness, Slot::metallic_roughness, 1)));
+  }
   [[nodiscard]] Scalar transmission() {
     return may_transmit_ ? t_.textured(Field::transmission, Slot::transmission, 0) : t_.number(0);
   }
@@ -136,7 +186,7 @@ class LayeredSurface {
   }
 
   SurfaceTerms& t_;
-  bool is_inside_, is_interface_;
+  bool is_inside_, is_interface_, is_blurred_;
   Triple base_;
   Scalar metallic_;
   Triple normal_, view_;
@@ -150,7 +200,7 @@ class LayeredSurface {
   std::optional<Coat> coat_;
 };
 
-/// Blinn-phong: its power lobe goes with the diffuse one.
+/// Blinn-phong: its power lobe has the place of a coat.
 class PhongSurface {
  public:
   explicit PhongSurface(SurfaceTerms& terms)
@@ -159,32 +209,15 @@ class PhongSurface {
   [[nodiscard]] LobeValues lobes(const Triple& direction) {
     const Scalar nl = max(dot(normal_, direction), 0.0F);
     const Scalar nh = max(dot(normal_, normalized(direction + t_.view())), 1e-7F);
-    const Scalar shininess = t_.field(Field::shininess);
+    const Scalar shininess = floored_shininess(t_.field(Field::shininess), t_.input(Input::alpha_floor));
     const Triple power = t_.field3(Field::phong_specular) * phong_scale(shininess) * phong_lobe(shininess, nh);
-    return {(lambert(base_ * t_.field3(Field::phong_diffuse)) + power) * nl, t_.grey(0), t_.grey(0)};
+    return {lambert(base_ * t_.field3(Field::phong_diffuse)) * nl, t_.grey(0), power * nl, t_.grey(0)};
   }
   [[nodiscard]] Triple ambient() { return t_.field3(Field::phong_ambient) * base_ * t_.occlusion(); }
 
  private:
   SurfaceTerms& t_;
   Triple base_, normal_;
-};
-
-Triple child_direction(SurfaceTerms& t, Branch branch) {
-  return t.input3(Input::child_direction, static_cast<std::uint32_t>(branch));
-}
-Scalar child_share(SurfaceTerms& t, Branch branch) {
-  return t.input(Input::child_share, 0, static_cast<std::uint32_t>(branch));
-}
-Triple proportion(SurfaceTerms& t, Field field) {
-  const Scalar share = t.field(field);
-  return {share, share, share};
-}
-/// The light that comes through a branch, before coverage. Columns that a surface has for one channel are made for
-/// each (KHR_materials_dispersion).
-struct ScatteredColumns {
-  std::vector<Triple> weights;  // of `children`, without that of transparency
-  Triple emission, ambient;
 };
 
 template <class Surface>
@@ -252,7 +285,8 @@ ScatteredColumns phong_columns(SurfaceTerms& t, const PathKey& key) {
   for (const Branch branch : branches_of(key.children)) {
     if (branch == Branch::reflection) columns.weights.push_back(proportion(t, Field::reflection));
     if (branch == Branch::refraction) columns.weights.push_back(proportion(t, Field::refraction));
-    if (branch == Branch::diffuse) columns.weights.push_back(lobe_weight(t, surface, branch));
+    if (branch == Branch::diffuse || branch == Branch::coat)
+      columns.weights.push_back(lobe_weight(t, surface, branch));
   }
   return columns;
 }
@@ -289,7 +323,7 @@ template <class Surface>
 Triple lit(SurfaceTerms& t, Surface& surface) {
   const LobeValues values = surface.lobes(t.input3(Input::light_direction));
   return values.diffuse * t.input(Input::light_weight, 0) + values.specular * t.input(Input::light_weight, 1) +
-         values.coat * t.input(Input::light_weight, 2);
+         values.coat * t.input(Input::light_weight, 2) + values.transmission * t.input(Input::light_weight, 3);
 }
 
 PathColumns light_columns(SurfaceTerms& t, const PathKey& key) {

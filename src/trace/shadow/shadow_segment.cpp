@@ -30,6 +30,13 @@ Target target_of(const RayNode& node, const RayLight& light, const LightSample& 
   return Target{sample.way, true, node.point.position + sample.way * sample.distance, light.emission ? kBefore : 1.0F};
 }
 
+/// Does light from behind reach a hit by samples of its own? Where segments of the hit before it stand for all that is
+/// let through, it does not.
+bool lights_back(const RayNode& node, const RayLight& light) {
+  const PathState& path = node.ray.path;
+  return node.has_back && !(light.is_soft() ? path.is_wide || path.is_shut : path.has_lamps);
+}
+
 }  // namespace
 
 ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
@@ -44,13 +51,18 @@ ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
   }
   if (!target) return segment;
   const Direction& to_light = target->way;
-  segment.faces = point.shading.dot(to_light) > 0;
-  if (!segment.faces) return segment;
-  // A light near the horizon of the triangle is judged from the smooth surface.
-  constexpr float kHorizon = 0.1F;  // cosine
   const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));
-  const float share = std::fmin(std::fmax(1.0F - height / kHorizon, 0.0F), 1.0F);
-  segment.origin = point.position + point.lift * share + point.geometric * point.offset;
+  if (point.shading.dot(to_light) > 0) {
+    // A light near the horizon of the triangle is judged from the smooth surface.
+    constexpr float kHorizon = 0.1F;  // cosine
+    const float share = std::fmin(std::fmax(1.0F - height / kHorizon, 0.0F), 1.0F);
+    segment.origin = point.position + point.lift * share + point.geometric * point.offset;
+  } else if (height < 0 && lights_back(node, light)) {
+    segment.origin = point.position - point.geometric * point.offset;
+  } else {
+    return segment;
+  }
+  segment.faces = true;
   segment.direction = target->has_place ? target->at - segment.origin : to_light;
   segment.t_max = target->has_place ? target->reach : std::numeric_limits<float>::infinity();
   return segment;

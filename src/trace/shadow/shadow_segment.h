@@ -10,7 +10,7 @@ namespace relook {
 
 /// The shadow segment from a hit to a light, or to its sample: t runs to 1 where that has a place.
 struct ShadowSegment {
-  bool faces = false;  // the light is above the smooth surface, and sampled at all
+  bool faces = false;  // the light is sampled at all, and above the smooth surface, or behind a surface that has a back
   Point origin{0, 0, 0};
   Direction direction{0, 0, 1};
   float t_max = 1;

@@ -10,7 +10,8 @@ namespace relook {
 
 /// How a ray left its parent. The numbers are on disk, but for that of the primary ray, and never change. The
 /// three `refracted_` ones stand for `refraction` where colours part (KHR_materials_dispersion). `diffuse` is a
-/// direction of the path integrator's diffuse lobe; its reflection and coat are directions of glossy lobes.
+/// direction of the path integrator's diffuse lobe; its reflection and coat are directions of glossy lobes, its
+/// refractions of lobes, too, where a surface blurs.
 enum class Branch : std::uint8_t {
   reflection = 0,
   coat = 1,
@@ -34,8 +35,6 @@ class BranchSet {
   [[nodiscard]] static constexpr BranchSet parted() { return BranchSet(0x70); }
 
   [[nodiscard]] constexpr bool has(Branch branch) const { return (bits_ >> static_cast<unsigned>(branch) & 1U) != 0; }
-  /// Directions of lobes: at most one of them leaves a hit of the path integrator.
-  [[nodiscard]] static constexpr BranchSet lobes() { return BranchSet(0x83); }
   constexpr void add(Branch branch) { bits_ = static_cast<std::uint8_t>(bits_ | 1U << static_cast<unsigned>(branch)); }
   [[nodiscard]] constexpr bool empty() const { return bits_ == 0; }
   [[nodiscard]] constexpr unsigned size() const { return static_cast<unsigned>(std::popcount(bits_)); }

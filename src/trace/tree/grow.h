@@ -46,9 +46,11 @@ struct GrowScene {
   std::uint32_t shadow_bits = 0;  // of shadow counters; more than 0: the level is of a tracer that counts blockers
   const ObjectLevels* objects = nullptr;  // for hits, or distances of hits, that are not kept; null: all are known
   Integrator integrator = Integrator::whitted;
-  std::uint32_t diffuse_depth = 0, glossy_depth = 4;  // bounces, of the path integrator
+  std::uint32_t diffuse_depth = 0, glossy_depth = 4, transmission_depth = 16;  // bounces, of the path integrator
 
-  [[nodiscard]] SpawnRule rule() const { return {max_depth, integrator, diffuse_depth, glossy_depth}; }
+  [[nodiscard]] SpawnRule rule() const {
+    return {max_depth, integrator, diffuse_depth, glossy_depth, transmission_depth};
+  }
   [[nodiscard]] PathLayout layout() const { return {scene.light_order().size(), shadow_bits}; }
 };
 

@@ -1,8 +1,12 @@
 #include "trace/tree/lobes.h"
 
+#include "light/point_set.h"
 #include "physics/brushed_ggx.h"
+#include "physics/dispersion.h"
 #include "physics/fresnel.h"
 #include "physics/ggx.h"
+#include "physics/phong_sample.h"
+#include "physics/rough_refraction.h"
 #include "trace/tree/tree_block.h"
 
 namespace relook {
@@ -44,23 +48,50 @@ void set_glossy(float roughness, float floor, AlphaBucket& bucket, GlossyLobe& l
   lobe = {bucket.representative(), bucket.representative()};
 }
 
+/// What is let through is as rough as the material says, whatever scattered before.
+void set_transmission(const RayNode& node, const RayObject& object, float roughness, VertexLobes& lobes) {
+  set_glossy(roughness, 0, lobes.transmission_bucket, lobes.transmission);
+  if (!object.optics.bent) return;
+  lobes.channel = node.ray.channel;
+  if (object.optics.dispersion > 0 && lobes.channel == Channel::all) {
+    const float number = sample_number(node.ray.path.key, node.ray.path.history, Purpose::lobe);
+    lobes.channel = kChannels[number < 1.0F / 3 ? 0 : number < 2.0F / 3 ? 1 : 2];
+    lobes.is_channel_chosen = true;
+  }
+  const float ior = channel_ior(object.optics, lobes.channel);
+  lobes.eta = node.point.inside ? 1.0F / ior : ior;
+}
+
 }  // namespace
 
-LobeSet lobe_set(const Material& material, const SurfaceOptics& optics, bool inside) {
-  const MaterialLobes lobes = material_lobes(material);
-  if (optics.volume && inside) return {false, lobes.specular, false};
-  return {lobes.diffuse, lobes.specular, lobes.coat && !inside};
+LobeSet lobe_set(const RayObject& object, bool inside) {
+  const MaterialLobes lobes = material_lobes(*object.material);
+  if (object.optics.volume && inside) return {false, lobes.specular, false, object.blurs};
+  return {lobes.diffuse, lobes.specular, lobes.coat && !inside, object.blurs};
+}
+
+float channel_ior(const SurfaceOptics& optics, Channel channel) {
+  if (channel == Channel::red) return red_ior(optics.ior, optics.dispersion);
+  return channel == Channel::blue ? blue_ior(optics.ior, optics.dispersion) : optics.ior;
 }
 
 VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal& normal, const Normal& coat_normal) {
   VertexLobes lobes;
   const Material& material = *object.material;
-  const LobeSet set = lobe_set(material, object.optics, node.point.inside);
-  if (!set.diffuse && !set.specular && !set.coat) return lobes;
+  const LobeSet set = lobe_set(object, node.point.inside);
+  if (!set.any()) return lobes;
   const Direction view = -node.ray.direction;
   lobes.base = basis_about(normal);
   lobes.view = lobes.base.to_local(view);
   const float cosine = std::fmin(std::fmax(lobes.view.z, kLeastCosine), 1.0F), floor = node.ray.path.alpha_floor;
+  if (material.model == IlluminationModel::blinn_phong) {
+    const ShininessBucket bucket = bucket_of_shininess(floored_shininess(material.shininess, floor));
+    lobes.shininess = bucket.representative();
+    lobes.coat_bucket = bucket.as_alpha();
+    lobes.shares = power_shares(set);
+    return lobes;
+  }
+  lobes.diffuse.has_sheen = material.sheen_color != Color(0, 0, 0);
   float coat = 0;
   if (set.coat) {
     lobes.coat_base = basis_about(coat_normal);
@@ -69,8 +100,10 @@ VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal&
     set_glossy(textured(node, object, material.clearcoat_roughness, Slot::clearcoat_roughness, 1), floor,
                lobes.coat_bucket, lobes.coat);
   }
+  const float roughness =
+      set.specular || set.transmission ? textured(node, object, material.roughness, Slot::metallic_roughness, 1) : 1.0F;
+  if (set.transmission) set_transmission(node, object, roughness, lobes);
   if (set.specular) {
-    const float roughness = textured(node, object, material.roughness, Slot::metallic_roughness, 1);
     set_glossy(roughness, floor, lobes.specular_bucket, lobes.specular);
     const Brush brush = brush_at(node, object);
     if (brush.along.dot(brush.along) > 0) {
@@ -90,30 +123,62 @@ VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal&
 float VertexLobes::density(Lobe lobe, const Direction& way) const {
   const float share = shares.of(lobe);
   if (!(share > 0)) return 0;
-  if (lobe == Lobe::coat) {
+  if (lobe == Lobe::coat && shininess < 0) {
     const Direction local = coat_base.to_local(way);
     return local.z > 0 ? share * coat.density(coat_view, local) : 0.0F;
   }
   const Direction local = base.to_local(way);
+  if (lobe == Lobe::transmission) return share * transmitted_density(local);
   if (!(local.z > 0)) return 0;
-  return share * (lobe == Lobe::diffuse ? cosine_density(local.z) : specular.density(view, local));
+  if (lobe == Lobe::diffuse) return share * diffuse.density(local.z);
+  return share * (lobe == Lobe::coat ? phong_reflection_density(shininess, facing(view), local)
+                                     : specular.density(view, local));
+}
+
+float VertexLobes::transmitted_density(const Direction& way) const {
+  if (!(way.z < 0)) return 0;
+  if (eta == 0) return transmission.density(view, {way.x, way.y, -way.z});
+  const float density = ggx_refraction_density(transmission.alpha_x, facing(view), way, eta);
+  return is_channel_chosen ? density * (1.0F / 3) : density;
+}
+
+std::optional<Direction> VertexLobes::transmitted(Uv u) const {
+  if (eta != 0) {
+    const Direction seen = facing(view);
+    return refracted_direction(seen, visible_normal(transmission.alpha_x, transmission.alpha_y, seen, u), eta);
+  }
+  auto way = transmission.sample(view, u);
+  if (way) way->z = -way->z;
+  return way;
+}
+
+std::optional<Direction> VertexLobes::direction(Lobe lobe, Uv u) const {
+  switch (lobe) {
+    case Lobe::diffuse:
+      return diffuse.sample(u);
+    case Lobe::specular:
+      return specular.sample(view, u);
+    case Lobe::transmission:
+      return transmitted(u);
+    case Lobe::coat:
+      break;
+  }
+  if (shininess < 0) return coat.sample(coat_view, u);
+  const Direction seen = facing(view);
+  return reflected_direction(seen, phong_half(shininess, u));
 }
 
 std::optional<LobeSample> sample_lobe(const VertexLobes& lobes, const Normal& geometric, Uv u) {
   const LobeChoice choice = chosen_lobe(lobes.shares, u.x);
-  const Uv rest(choice.u, u.y);
-  Direction way;
-  if (choice.lobe == Lobe::diffuse) {
-    way = lobes.base.to_world(cosine_direction(rest));
-  } else {
-    const bool is_coat = choice.lobe == Lobe::coat;
-    const auto local = is_coat ? lobes.coat.sample(lobes.coat_view, rest) : lobes.specular.sample(lobes.view, rest);
-    if (!local) return std::nullopt;
-    way = (is_coat ? lobes.coat_base : lobes.base).to_world(*local);
-  }
+  const auto local = lobes.direction(choice.lobe, {choice.u, u.y});
+  if (!local) return std::nullopt;
+  const bool is_on_coat = choice.lobe == Lobe::coat && lobes.shininess < 0;
+  Direction way = (is_on_coat ? lobes.coat_base : lobes.base).to_world(*local);
   way = way / std::sqrt(way.dot(way));
   const float density = lobes.density(choice.lobe, way);
-  if (!(way.dot(geometric) > 0) || !(density > 0)) return std::nullopt;
+  const float height = way.dot(geometric);
+  const bool leaves = choice.lobe == Lobe::transmission ? height < 0 : height > 0;
+  if (!leaves || !(density > 0)) return std::nullopt;
   return LobeSample{choice.lobe, way, density};
 }
 

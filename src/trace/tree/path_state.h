@@ -22,6 +22,8 @@ struct PathState {
   bool is_shut = false;       // from a wide lobe, through volumes alone: lights with a size reach that lobe by segments
   bool is_wide = false;       // of a wide lobe whose lights have samples, as long as it runs straight
   bool is_alone = false;      // no sample of a light stands for its way
+  bool has_lamps = false;     // by straight segments lamps without size reach what sent it through all that transmits
+  std::uint8_t diffuse = 0, transmission = 0;  // bounces of these kinds so far
 };
 
 }  // namespace relook

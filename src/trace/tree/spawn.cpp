@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "physics/dispersion.h"
 #include "physics/fresnel.h"
 #include "physics/mirror.h"
 #include "trace/shadow/shadow_segment.h"
@@ -25,12 +24,6 @@ Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, f
   if (map.kind == TextureKind::none) return node.point.shading;
   const Rgba texel = texture_value(map, texture_coordinates(object, node.hit, node.point.local, map), node.footprint);
   return mapped_normal(tangent_frame(object, node.hit, node.point, map), node.point, texel, scale);
-}
-
-/// The index of refraction for a channel; all of them: that of the middle.
-float channel_ior(const SurfaceOptics& optics, Channel channel) {
-  if (channel == Channel::red) return red_ior(optics.ior, optics.dispersion);
-  return channel == Channel::blue ? blue_ior(optics.ior, optics.dispersion) : optics.ior;
 }
 
 /// Collects the rays of one hit.
@@ -184,8 +177,32 @@ void spawn_whitted(const RayNode& node, const RayObject& object, const SpawnRule
   interface.refract(spawner, true, [](SpawnedRay*) {});
 }
 
-Branch branch_of(Lobe lobe) {
-  return lobe == Lobe::diffuse ? Branch::diffuse : lobe == Lobe::coat ? Branch::coat : Branch::reflection;
+Branch branch_of(Lobe lobe, const VertexLobes& lobes) {
+  switch (lobe) {
+    case Lobe::diffuse:
+      return Branch::diffuse;
+    case Lobe::specular:
+      return Branch::reflection;
+    case Lobe::coat:
+      return Branch::coat;
+    case Lobe::transmission:
+      break;
+  }
+  return lobes.is_channel_chosen ? refracted(lobes.channel) : Branch::refraction;
+}
+
+/// The end of a ray's way: after that many bounces of a kind, or of all, it gathers.
+bool ends(const PathState& path, const RayNode& from, const SpawnRule& rule) {
+  return path.diffuse > rule.diffuse_depth || path.glossy > rule.glossy_depth ||
+         path.transmission > rule.transmission_depth || from.ray.generation >= rule.max_depth;
+}
+
+/// What stands for the way of a transmitted lobe ray beside itself. `is_sampled`: its hit gathers light along it.
+void note_transmission(PathState& path, const PathState& from, bool is_sampled, bool is_wide) {
+  path.is_alone = !is_sampled;
+  path.is_shut = from.is_shut || from.is_wide;
+  path.is_wide = is_wide && is_sampled && !path.is_shut;
+  path.has_lamps = from.has_lamps || is_sampled;
 }
 
 /// What is counted of straight rays by coverage behind a vertex that scatters: the eye's do not count there.
@@ -197,11 +214,12 @@ void add_lobe_ray(Spawner& spawner, const RayNode& node, const RayObject& object
   const PathState& from = node.ray.path;
   const auto sample = sample_lobe(lobes, node.point.geometric, sample_point(from.key, from.history, Purpose::lobe));
   if (!sample) return;
-  const bool is_diffuse = sample->lobe == Lobe::diffuse;
+  const Lobe lobe = sample->lobe;
+  const bool is_through = lobe == Lobe::transmission;
   // Behind the last vertex, too, a ray gathers what shines where it ends.
   spawner.set_may_spawn(true);
-  const float counted = sample->lobe == Lobe::specular ? fresnel : 1.0F;
-  SpawnedRay* ray = spawner.add(branch_of(sample->lobe), sample->way, 1.0F, counted);
+  const float counted = lobe == Lobe::specular ? fresnel : 1.0F;
+  SpawnedRay* ray = spawner.add(branch_of(lobe, lobes), sample->way, is_through ? -1.0F : 1.0F, counted);
   if (ray == nullptr) return;
   PathState& path = ray->path;
   path.straight = straight_behind(from);
@@ -209,14 +227,22 @@ void add_lobe_ray(Spawner& spawner, const RayNode& node, const RayObject& object
   path.density = sample->density;
   path.is_first = from.from.is_none();
   path.is_eye = false;
-  path.is_shut = false;
-  path.is_alone = !is_lit(object, node) || !(node.point.shading.dot(sample->way) > 0);
-  path.is_wide = lobes.is_wide(sample->lobe) && !path.is_alone;
-  const AlphaBucket bucket = sample->lobe == Lobe::coat ? lobes.coat_bucket : lobes.specular_bucket;
-  path.alpha_floor =
-      std::fmax(from.alpha_floor, is_diffuse ? kAlphaFloorBehindDiffuse : alpha_floor_behind(bucket));
-  path.glossy = static_cast<std::uint8_t>(from.glossy + (is_diffuse ? 0 : 1));
-  path.gathers = is_diffuse || path.glossy > rule.glossy_depth || node.ray.generation >= rule.max_depth;
+  const float height = node.point.shading.dot(sample->way);
+  if (is_through) {
+    note_transmission(path, from, node.has_back && height < 0, lobes.is_wide(lobe));
+  } else {
+    path.is_shut = false;
+    path.is_alone = !is_lit(object, node) || !(height > 0);
+    path.is_wide = lobes.is_wide(lobe) && !path.is_alone;
+    path.has_lamps = !path.is_alone;
+  }
+  path.alpha_floor = std::fmax(
+      from.alpha_floor, lobe == Lobe::diffuse ? kAlphaFloorBehindDiffuse : alpha_floor_behind(lobes.bucket(lobe)));
+  const float spread =
+      lobe == Lobe::diffuse ? kConeSpreadBehindDiffuse : cone_spread_behind(lobes.bucket(lobe));
+  ray->cone_spread = std::fmax(ray->cone_spread, spread);
+  ++(lobe == Lobe::diffuse ? path.diffuse : is_through ? path.transmission : path.glossy);
+  path.gathers = ends(path, node, rule);
 }
 
 /// A proportion of blinn-phong: a mirror.
@@ -227,10 +253,10 @@ void add_mirror_ray(Spawner& spawner, const RayNode& node, const Normal& normal)
   ray->path.straight = straight_behind(node.ray.path);
   ray->path.from = node.object;
   ray->path.density = 0;
-  ray->path.is_eye = ray->path.is_shut = ray->path.is_wide = false;
+  ray->path.is_eye = ray->path.is_shut = ray->path.is_wide = ray->path.has_lamps = false;
 }
 
-/// A ray through a surface that bends rays: a segment through it counts as bent, whichever way this one goes.
+/// A ray through a surface that bends or blurs: a segment through it counts as bent, whichever way this one goes.
 void note_refraction(SpawnedRay* ray) {
   if (ray == nullptr) return;
   PathState& path = ray->path;
@@ -265,15 +291,23 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
   const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
   if (gathers && !optics.refracts && !optics.transparent) return;
   const auto bent = [&](SpawnedRay* ray) {
-    if (optics.bent) note_refraction(ray);
+    if (optics.bent || object.blurs) note_refraction(ray);
+  };
+  const auto refracted = [&](SpawnedRay* ray) {
+    bent(ray);
+    if (ray == nullptr) return;
+    ++ray->path.transmission;
+    ray->path.gathers = gathers || ray->path.transmission > rule.transmission_depth;
   };
   const CoverageChoice coverage = coverage_choice(node, object);
   if (optics.transparent && coverage.goes_on()) bent(add_straight_ray(spawner, node, object, is_deep));
   if (!coverage.sees_surface()) return;
   const Interface interface(node, object);
   if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
-  interface.refract(spawner, false, bent);
-  interface.refract(spawner, true, bent);
+  // Where what goes through is blurred, a lobe stands for it, but for rays that only gather.
+  const bool is_smooth = gathers || !object.blurs;
+  if (is_smooth) interface.refract(spawner, false, refracted);
+  if (is_smooth) interface.refract(spawner, true, refracted);
   if (gathers) return;
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
   if (!lobes.any()) return;

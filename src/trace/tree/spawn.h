@@ -16,7 +16,7 @@ namespace relook {
 struct SpawnRule {
   std::uint32_t max_depth = 6;  // generations of rays
   Integrator integrator = Integrator::whitted;
-  std::uint32_t diffuse_depth = 0, glossy_depth = 4;  // bounces, of the path integrator
+  std::uint32_t diffuse_depth = 0, glossy_depth = 4, transmission_depth = 16;  // bounces, of the path integrator
   /// Might a hit send a ray on at all?
   [[nodiscard]] bool may_spawn(const RayObject& object) const {
     return integrator == Integrator::path || object.optics.spawns();

@@ -28,8 +28,11 @@ struct SpawnedRay {
   PathState path{};
 
   [[nodiscard]] bool goes_on() const { return !behind.object.is_none(); }
+  /// Does it meet the same, and spawn the same there?
   [[nodiscard]] bool is_same_way(const SpawnedRay& other) const {
-    return origin == other.origin && direction == other.direction && goes_on() == other.goes_on();
+    return origin == other.origin && direction == other.direction && goes_on() == other.goes_on() &&
+           cone_spread == other.cone_spread && path.alpha_floor == other.path.alpha_floor &&
+           path.gathers == other.path.gathers;
   }
 };
 

@@ -33,6 +33,7 @@ void complete(RayNode& node, const RayObject& object) {
   const Direction way = node.point.position - node.ray.origin;
   node.length = std::sqrt(way.dot(way));
   const float width = node.ray.cone_width + node.ray.cone_spread * node.length;
+  node.has_back = object.blurs && !object.optics.bent;
   node.footprint = width / std::fmax(-node.ray.direction.dot(node.point.geometric), 0.05F);
   node.coverage = coverage_choice(node, object);
 }
