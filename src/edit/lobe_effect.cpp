@@ -16,12 +16,17 @@ struct Buckets {
   bool operator==(const Buckets&) const = default;
 };
 
-/// Lookups mix texels, and may miss their extremes by rounding.
-constexpr float kRounding = 1e-5F;
-std::pair<float, float> scaled(float factor, float smallest, float largest) {
-  const float below = smallest == largest && smallest == 1 ? 1 : 1 - kRounding;
-  const float above = smallest == largest && smallest == 1 ? 1 : 1 + kRounding;
-  return {factor * smallest * below, factor * largest * above};
+/// Of a factor times a channel of its texture. Lookups mix texels, and may miss their extremes by rounding; those of
+/// bytes do not miss 1 where all texels have it.
+std::pair<float, float> scaled(float factor, const TextureSlot& slot, int channel) {
+  if (slot.kind == TextureKind::none) return {factor, factor};
+  constexpr float kRounding = 1e-5F;
+  const auto [lowest, highest] = texture_range(slot);
+  const float smallest = lowest[channel], largest = highest[channel];
+  const bool is_one = slot.kind == TextureKind::image && slot.pyramid->format != TexelFormat::float32 &&
+                      smallest == 1 && largest == 1;
+  if (is_one) return {factor, factor};
+  return {factor * smallest * (1 - kRounding), factor * largest * (1 + kRounding)};
 }
 
 /// Of alpha: [2^k, 2^(k+1)) is bucket k.
@@ -30,8 +35,8 @@ int alpha_bucket(float roughness) {
   const float clamped = std::clamp(roughness, kSmoothest, 1.0F);
   return std::min(std::ilogb(clamped * clamped), -1);  // 1 belongs to the last but one
 }
-Buckets alpha_buckets(float factor, float smallest, float largest) {
-  const auto [low, high] = scaled(factor, smallest, largest);
+Buckets alpha_buckets(float factor, const TextureSlot& slot) {
+  const auto [low, high] = scaled(factor, slot, 1);
   return {alpha_bucket(low), alpha_bucket(high)};
 }
 
@@ -40,24 +45,20 @@ int shininess_bucket(float shininess) { return shininess < 1 ? -1 : std::ilogb(s
 
 int metal_bucket(float metallic) { return metallic < 1.0F / 64 ? 0 : metallic > 63.0F / 64 ? 2 : 1; }
 Buckets metal_buckets(const Material& m) {
-  const auto [smallest, largest] = texture_range(m.slot(Slot::metallic_roughness));
-  const auto [low, high] = scaled(m.metallic, smallest.b, largest.b);
+  const auto [low, high] = scaled(m.metallic, m.slot(Slot::metallic_roughness), 2);
   return {metal_bucket(low), metal_bucket(high)};
 }
 Buckets roughness_buckets(const Material& m) {
-  const auto [smallest, largest] = texture_range(m.slot(Slot::metallic_roughness));
-  return alpha_buckets(m.roughness, smallest.g, largest.g);
+  return alpha_buckets(m.roughness, m.slot(Slot::metallic_roughness));
 }
 Buckets coat_buckets(const Material& m) {
-  const auto [smallest, largest] = texture_range(m.slot(Slot::clearcoat_roughness));
-  return alpha_buckets(m.clearcoat_roughness, smallest.g, largest.g);
+  return alpha_buckets(m.clearcoat_roughness, m.slot(Slot::clearcoat_roughness));
 }
 
 Buckets coverage_buckets(const Material& m, const Mesh& mesh) {
-  const auto [smallest, largest] = texture_range(m.slot(Slot::base_color));
-  const auto [low, high] = scaled(m.base_color.a, smallest.a, largest.a);
-  // Vertex colours are at most 1, and mixed likewise.
-  const float least = mesh.colors.empty() ? 1 : mesh.min_alpha * (1 - kRounding);
+  const auto [low, high] = scaled(m.base_color.a, m.slot(Slot::base_color), 3);
+  // Vertex colours are at most 1, and their mixing rounds, too.
+  const float least = mesh.colors.empty() ? 1 : mesh.min_alpha * (1 - 1e-5F);
   return {static_cast<int>(bucket_of_coverage(low * least)), static_cast<int>(bucket_of_coverage(high))};
 }
 
@@ -95,9 +96,10 @@ bool turns_lobes(const Material& before, const Material& after, std::span<const 
   const bool same_texture = before.slot(Slot::metallic_roughness) == after.slot(Slot::metallic_roughness);
   if (differs(metal_buckets(before), metal_buckets(after), same_texture && before.metallic == after.metallic))
     return true;
-  if (differs(roughness_buckets(before), roughness_buckets(after),
-              same_texture && before.roughness == after.roughness))
-    return true;
+  const bool same_roughness = same_texture && before.roughness == after.roughness;
+  // A brushed lobe has a bucket along its brush, too.
+  if (after.anisotropy > 0 && !same_roughness) return true;
+  if (differs(roughness_buckets(before), roughness_buckets(after), same_roughness)) return true;
   if (after.clearcoat == 0) return false;
   const bool same_coat = before.slot(Slot::clearcoat_roughness) == after.slot(Slot::clearcoat_roughness) &&
                          before.clearcoat_roughness == after.clearcoat_roughness;

@@ -85,6 +85,12 @@ MaterialLobes material_lobes(const Material& material) {
           .transmission = blurs(material)};
 }
 
+bool dims_otherwise(const Material& material) {
+  if (material.model != IlluminationModel::metallic_roughness) return false;
+  return material.clearcoat > 0 || material.sheen_color != Color(0, 0, 0) ||
+         material.slot(Slot::normal).kind != TextureKind::none;
+}
+
 bool blurs(const Material& material) {
   if (material.model != IlluminationModel::metallic_roughness || !(material.transmission > 0)) return false;
   if (!(material.roughness * texture_range(material.slot(Slot::metallic_roughness)).second.g >= kLeastBlur)) return false;

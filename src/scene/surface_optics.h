@@ -54,6 +54,10 @@ inline constexpr float kLeastBlur = 0.0625F;
 /// Where the index of a volume is next to 1, be it that of red light alone, microfacets bend nothing.
 inline constexpr float kLeastBentIor = 1.015625F, kMostBlurredDispersion = 8;
 
+/// Is a thin surface coated, covered with sheen or bumpy, so that what goes through is dimmed otherwise than the tint of
+/// segments through it says?
+[[nodiscard]] bool dims_otherwise(const Material& material);
+
 /// Smallest and largest linear value that a slot multiplies its factor by; (1, 1) for an empty slot.
 [[nodiscard]] std::pair<Rgba, Rgba> texture_range(const TextureSlot& slot);
 

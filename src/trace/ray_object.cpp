@@ -102,6 +102,7 @@ void RayObjectMaker::set_material(RayObject& object, std::shared_ptr<const Mater
   object.material = std::move(material);
   object.optics = surface_optics(*object.material, *object.mesh);
   object.blurs = integrator_ == Integrator::path && object.optics.refracts && relook::blurs(*object.material);
+  object.turns = object.optics.bent || object.blurs || (object.optics.refracts && dims_otherwise(*object.material));
   const Mesh& mesh = *object.mesh;
   for (std::uint8_t set = 0; set < object.tangents.size(); ++set) {
     const auto needs = [&](Slot which) {

@@ -125,6 +125,23 @@ TEST(PathCoverage, a_stack_before_an_area_light_tints_samples_and_rays_alike) {
   }
 }
 
+TEST(PathCoverage, samples_bring_all_where_no_ray_gets_through) {
+  // More sheets than a ray goes straight on through, before a window that fills most of what the floor sees.
+  const auto studio = [](double coverage, int sheets) {
+    PathStudio scene = stack_studio(lambert(0.5), covering(lambert(0), coverage), sheets);
+    scene.area("Window", {{"type", "rect"}, {"intensity", 10}, {"size", 60}},
+               {{"translation", {0, 4, 0}}, {"rotation", shining({0, -1, 0})}});
+    return scene;
+  };
+  PathStudio bare = studio(0, 0);
+  const Measured open = floor_of(bare);
+  for (const Stack& stack : {Stack{0, 17}, Stack{0.01, 20}}) {
+    PathStudio scene = studio(stack.coverage, stack.sheets);
+    const double through = share_left(stack.coverage, stack.sheets);
+    expect_alike(floor_of(scene), {open.mean * through, open.error * through}, name_of(stack, "by a dull floor"));
+  }
+}
+
 TEST(PathCoverage, a_sheet_lit_by_a_lamp_shows_in_a_mirror_by_its_coverage) {
   // The lamp shines past the small mirror onto the lower side: 2 lux at a cosine of 0.2 / sqrt(1.04), of which the
   // sheet scatters 0.8 / pi. Nothing is behind.

@@ -14,13 +14,20 @@ namespace {
 /// Lamps without a size are gathered as if no nearer than this behind a scattering, metres squared.
 constexpr float kLeastDistance2 = 1e-4F;
 
-/// Does a ray along the segment leave it, bent or blurred?
-bool is_turned_on(const ColorScene& scene, const TreeBlock& block, const LightLink& link) {
+/// What becomes of a ray that sets out along a segment.
+enum class AlongSegment : std::uint8_t {
+  arrives,
+  turns,  // it is bent or blurred, or dimmed otherwise
+  ends    // there are more surfaces with holes than rays go straight on through
+};
+AlongSegment ray_along(const ColorScene& scene, const TreeBlock& block, const RayNode& node, const LightLink& link) {
+  std::uint32_t straight = straight_behind(node.ray.path);
   for (std::uint32_t f = 0; f < link.filters; ++f) {
     const RayObject& object = scene.object(block.filters[link.first + f].object);
-    if (object.optics.bent || object.blurs) return true;
+    if (object.turns) return AlongSegment::turns;
+    if (passes_by_coverage(*object.material)) ++straight;
   }
-  return false;
+  return straight > kMostStraight ? AlongSegment::ends : AlongSegment::arrives;
 }
 
 /// Of a lamp without a size: it reaches every lobe.
@@ -75,16 +82,17 @@ std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& bl
     term->way = sample->way;
     term->radiance = radiance_of(ray_light, *sample) * lamp_share(light, node.point.position);
     const VertexLobes& lobes = block.lobes[node.lobes];
-    const bool is_turned = is_turned_on(scene, block, link);
+    const AlongSegment along = ray_along(scene, block, node, link);
     // No ray of a reflecting lobe leads below the triangle; samples may, where the smooth surface is lit.
     const bool is_above = sample->way.dot(node.point.geometric) > 0;
     constexpr std::array kLobes{Lobe::diffuse, Lobe::specular, Lobe::coat, Lobe::transmission};
     for (std::size_t k = 0; k < kLobes.size(); ++k) {
       const bool is_reached = is_above != (kLobes[k] == Lobe::transmission);
-      const float other = is_reached ? lobes.density(kLobes[k], sample->way) : 0.0F;
+      const float other =
+          is_reached && along != AlongSegment::ends ? lobes.density(kLobes[k], sample->way) : 0.0F;
       // Where rays are turned either the samples or the rays bring the light, as the lobe is wide or narrow.
-      if (is_turned)
-        term->weights[k] = lobes.is_wide(kLobes[k]) ? 1 / sample->density : 0.0F;
+      if (along == AlongSegment::turns)
+        term->weights[k] = lobes.is_wide(kLobes[k]) || !is_reached ? 1 / sample->density : 0.0F;
       else
         term->weights[k] = weight_of(sample->density, other) / sample->density;
     }

@@ -342,11 +342,17 @@ PathColumns light_columns(SurfaceTerms& t, const PathKey& key) {
   return {value * t.input3(Input::light_radiance) * t.coverage()};
 }
 
-/// The tint of the Whitted integrator, less what the face reflects (an interface of its ior, met from outside).
+/// The tint of the Whitted integrator, less what the face reflects (an interface of its ior, met from outside); of
+/// blinn-phong without the base colour, as its rays are weighted.
 PathColumns filter_columns(SurfaceTerms& t) {
+  const IlluminationModel model = t.builder().shape(Field::model).model;
+  if (model == IlluminationModel::blinn_phong) {
+    const Scalar coverage = t.coverage();
+    const Scalar share = min(t.field(Field::refraction) + t.field(Field::transparency), 1.0F) * coverage + (1.0F - coverage);
+    return {{share, share, share}};
+  }
   const Triple tint = filter_color(t);
-  if (t.builder().shape(Field::model).model != IlluminationModel::metallic_roughness ||
-      !t.builder().shape(Field::transmission).transmits)
+  if (model != IlluminationModel::metallic_roughness || !t.builder().shape(Field::transmission).transmits)
     return {tint};
   const bool is_volume = t.builder().shape(Field::thickness).thick;
   const Scalar cosine = t.input(Input::cosine);

@@ -26,4 +26,11 @@ struct PathState {
   std::uint8_t diffuse = 0, transmission = 0;  // bounces of these kinds so far
 };
 
+/// Straight rays by coverage that follow each other, at most.
+inline constexpr std::uint8_t kMostStraight = 16;
+/// What is counted of them behind a vertex that scatters: the eye's do not count there.
+[[nodiscard]] inline std::uint8_t straight_behind(const PathState& from) {
+  return from.from.is_none() ? std::uint8_t{0} : from.straight;
+}
+
 }  // namespace relook

@@ -205,9 +205,6 @@ void note_transmission(PathState& path, const PathState& from, bool is_sampled, 
   path.has_lamps = from.has_lamps || is_sampled;
 }
 
-/// What is counted of straight rays by coverage behind a vertex that scatters: the eye's do not count there.
-std::uint8_t straight_behind(const PathState& from) { return from.from.is_none() ? std::uint8_t{0} : from.straight; }
-
 /// The ray of a lobe that has been chosen, from a hit that scatters.
 void add_lobe_ray(Spawner& spawner, const RayNode& node, const RayObject& object, const VertexLobes& lobes,
                   const SpawnRule& rule, float fresnel) {
@@ -256,7 +253,7 @@ void add_mirror_ray(Spawner& spawner, const RayNode& node, const Normal& normal)
   ray->path.is_eye = ray->path.is_shut = ray->path.is_wide = ray->path.has_lamps = false;
 }
 
-/// A ray through a surface that bends or blurs: a segment through it counts as bent, whichever way this one goes.
+/// A ray through a surface that turns rays: a segment through it counts as turned, whichever way this one goes.
 void note_refraction(SpawnedRay* ray) {
   if (ray == nullptr) return;
   PathState& path = ray->path;
@@ -268,7 +265,6 @@ void note_refraction(SpawnedRay* ray) {
 
 /// The straight ray of what is transparent. By coverage alone it is no new generation, and has a limit of its own.
 SpawnedRay* add_straight_ray(Spawner& spawner, const RayNode& node, const RayObject& object, bool is_deep) {
-  constexpr std::uint8_t kMostStraight = 16;
   const bool by_coverage = passes_by_coverage(*object.material);
   spawner.set_may_spawn(by_coverage ? node.ray.path.straight < kMostStraight : !is_deep);
   SpawnedRay* ray = spawner.add_straight(Branch::transparency, 1.0F);
@@ -291,7 +287,7 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
   const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
   if (gathers && !optics.refracts && !optics.transparent) return;
   const auto bent = [&](SpawnedRay* ray) {
-    if (optics.bent || object.blurs) note_refraction(ray);
+    if (object.turns) note_refraction(ray);
   };
   const auto refracted = [&](SpawnedRay* ray) {
     bent(ray);
