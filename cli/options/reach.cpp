@@ -27,7 +27,7 @@ fs::path full_path(const fs::path& path) {
 }
 
 /// The absolute path with links followed, as far as it is there.
-fs::path resolved(const fs::path& path) {
+fs::path without_links(const fs::path& path) {
   std::error_code error;
   const fs::path known = fs::weakly_canonical(full_path(path), error);
   return error ? full_path(path) : known;
@@ -72,7 +72,7 @@ void add_input(const fs::path& input, Paths& readable) {
   readable.push_back(path);
   if (is_descriptor(path)) return;
   readable.push_back(path.parent_path());
-  const fs::path final_path = resolved(path);
+  const fs::path final_path = without_links(path);
   std::error_code error;
   if (!fs::is_directory(final_path, error)) return;
   readable.push_back(final_path.parent_path());
@@ -82,13 +82,13 @@ void add_input(const fs::path& input, Paths& readable) {
 /// A file, or a folder that is exchanged as a whole: made beside its final place.
 void add_output_beside(const fs::path& output, Reach& reach) {
   reach.writable.push_back(existing_folder(full_path(output).parent_path()));
-  reach.writable.push_back(existing_folder(resolved(output).parent_path()));
+  reach.writable.push_back(existing_folder(without_links(output).parent_path()));
   reach.readable.push_back(full_path(output));
 }
 
 void add_output_folder(const fs::path& output, Reach& reach) {
   reach.writable.push_back(existing_folder(full_path(output)));
-  reach.writable.push_back(existing_folder(resolved(output)));
+  reach.writable.push_back(existing_folder(without_links(output)));
   std::error_code error;
   if (fs::is_directory(output, error)) add_links(output, kDepth, reach.writable);
 }
@@ -105,7 +105,7 @@ bool has_names_of_cache(const fs::path& folder) {
 /// Adds the folders above an output that may be a cache or a run: an output must not lie in one, so the program looks
 /// whether they are.
 void add_owners(const fs::path& output, Paths& readable) {
-  for (fs::path folder = resolved(output).parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+  for (fs::path folder = without_links(output).parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     if (has_names_of_cache(folder)) readable.push_back(folder);
     for (const std::string_view name : {std::string_view(kReportName), std::string_view(kProgressName)})
       readable.push_back(folder / name);

@@ -17,9 +17,9 @@ constexpr std::array<std::string_view, 11> kPlainAttributes{
     "type",  "channels",         "compression",        "dataWindow",        "displayWindow", "lineOrder",
     "tiles", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "chromaticities"};
 
-void ignore_message(exr_const_context_t, exr_result_t, const char*) {}
+void say_nothing(exr_const_context_t, exr_result_t, const char*) {}
 
-struct FinishContext {
+struct FinishFile {
   void operator()(exr_context_t context) const { exr_finish(&context); }
 };
 
@@ -57,13 +57,13 @@ std::optional<FrameMeta> meta_of(exr_const_context_t file) {
 
 std::optional<FrameMeta> own_frame_meta(const std::filesystem::path& path) {
   exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  setup.error_handler_fn = ignore_message;
+  setup.error_handler_fn = say_nothing;
   exr_context_t opened = nullptr;
   if (exr_start_read(&opened, path.c_str(), &setup) != EXR_ERR_SUCCESS) {
     if (opened != nullptr) exr_finish(&opened);
     return std::nullopt;
   }
-  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, FinishContext> context(opened);
+  const std::unique_ptr<std::remove_pointer_t<exr_context_t>, FinishFile> context(opened);
   int parts = 0;
   exr_storage_t storage = EXR_STORAGE_LAST_TYPE;
   exr_compression_t compression = EXR_COMPRESSION_NONE;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -12,8 +11,6 @@
 
 namespace relook {
 namespace {
-
-bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
 
 /// `colors`: of the samples from `first` on.
 void put_on_top(const SampleColors& shown, std::uint32_t first, std::vector<Rgba>& colors) {

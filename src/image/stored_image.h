@@ -2,6 +2,7 @@
 // them. Brought up to date with what the passes over its tiles have found.
 #pragma once
 #include <atomic>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,9 @@
 #include "image/tile_layers.h"
 
 namespace relook {
+
+/// Has a pixel not changed? Zeros differ by their sign.
+[[nodiscard]] inline bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
 
 class StoredImage {
  public:

@@ -1,16 +1,10 @@
 // Sums of light of a stored image, tile by tile, and the pixels that they give.
-#include <cstring>
 #include <memory>
 #include <utility>
 
 #include "image/stored_image.h"
 
 namespace relook {
-namespace {
-
-bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
-
-}  // namespace
 
 void StoredImage::add_layers() {
   PieceHandler handler;

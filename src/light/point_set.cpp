@@ -5,7 +5,7 @@
 namespace relook {
 namespace {
 
-constexpr float kBelowOne = 0x1.fffffep-1F;
+constexpr float kLastFloatBelowOne = 0x1.fffffep-1F;
 constexpr std::uint64_t kGoldenGamma = 0x9E3779B97F4A7C15;  // 2^64 / golden ratio, odd (Steele et al. 2014, SplitMix)
 
 /// A permutation of 64-bit numbers without visible structure ("mix13" of Stafford 2011, "Better Bit Mixing").
@@ -84,7 +84,7 @@ float sample_number(const SampleKey& key, std::uint64_t history, Purpose purpose
 
 float remapped(float number, float first, float share) {
   const float left = share > 0 ? (number - first) / share : 0.0F;
-  return left > 0 ? (left < kBelowOne ? left : kBelowOne) : 0.0F;
+  return left > 0 ? (left < kLastFloatBelowOne ? left : kLastFloatBelowOne) : 0.0F;
 }
 
 std::uint64_t name_hash(std::string_view name) { return hash64(bytes_of(name)); }

@@ -37,7 +37,7 @@ class Files : public testing::Test {
 };
 
 template <class Action>
-std::string refusal(const Action& action) {
+std::string message_of_error(const Action& action) {
   try {
     action();
   } catch (const Error& error) {
@@ -61,16 +61,16 @@ TEST_F(Files, what_is_written_is_read_back) {
 
 TEST_F(Files, only_regular_files_are_read) {
   ASSERT_EQ(::mkfifo((folder_ / "fifo").c_str(), 0600), 0);
-  EXPECT_NE(refusal([&] { (void)read_file(folder_ / "fifo"); }).find("is not a regular file"), std::string::npos);
-  EXPECT_NE(refusal([&] { (void)read_file(folder_); }).find("is a folder"), std::string::npos);
-  EXPECT_NE(refusal([&] { (void)read_file(folder_ / "none"); }).find("no such file"), std::string::npos);
-  EXPECT_NE(refusal([&] { (void)read_file("/dev/zero"); }).find("is not a regular file"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "fifo"); }).find("is not a regular file"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file(folder_); }).find("is a folder"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "none"); }).find("no such file"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file("/dev/zero"); }).find("is not a regular file"), std::string::npos);
 }
 
 TEST_F(Files, size_limit_is_kept) {
   write_file(folder_ / "ten", std::string_view("0123456789"));
   EXPECT_EQ(read_file(folder_ / "ten", 10).size(), 10U);
-  EXPECT_NE(refusal([&] { (void)read_file(folder_ / "ten", 9); }).find("has 10 bytes; at most 9"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "ten", 9); }).find("has 10 bytes; at most 9"), std::string::npos);
 }
 
 TEST_F(Files, contained_paths_stay_inside) {
@@ -89,13 +89,13 @@ TEST_F(Files, contained_paths_stay_inside) {
   for (const std::string_view uri :
        {"../secret"sv, "a/../../secret"sv, "out"sv, "up/secret"sv, "/etc/hostname"sv, ""sv, "."sv, ".."sv, "none"sv,
         "file:here"sv, "http://h/here"sv, "here\0x"sv, "..\\secret"sv})
-    EXPECT_TRUE(refusal([&] { (void)resolve(uri); }).starts_with("scene: /where: ")) << uri;
+    EXPECT_TRUE(message_of_error([&] { (void)resolve(uri); }).starts_with("scene: /where: ")) << uri;
 }
 
 TEST_F(Files, failed_writes_leave_the_old_file_and_no_other) {
   const fs::path path = folder_ / "data.bin";
   write_file(path, std::string_view("old"));
-  EXPECT_NE(refusal([&] { write_file(folder_ / "missing/data.bin", std::string_view("new")); }), "");
+  EXPECT_NE(message_of_error([&] { write_file(folder_ / "missing/data.bin", std::string_view("new")); }), "");
 
   rlimit old_limit{};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
@@ -116,11 +116,11 @@ TEST_F(Files, failed_writes_leave_the_old_file_and_no_other) {
 }
 
 TEST_F(Files, a_folder_in_the_way_is_an_error) {
-  EXPECT_NE(refusal([&] { write_file(folder_ / "inner", std::string_view("x")); }), "");
+  EXPECT_NE(message_of_error([&] { write_file(folder_ / "inner", std::string_view("x")); }), "");
   EXPECT_EQ(names(), std::vector<std::string>{"inner"});
   write_file(folder_ / "plain", std::string_view("x"));
-  EXPECT_NE(refusal([&] { make_folders(folder_ / "plain/below"); }), "");
-  EXPECT_NE(refusal([&] { make_folders(folder_ / "plain"); }), "");
+  EXPECT_NE(message_of_error([&] { make_folders(folder_ / "plain/below"); }), "");
+  EXPECT_NE(message_of_error([&] { make_folders(folder_ / "plain"); }), "");
   make_folders(folder_ / "a/b/c");
   make_folders(folder_ / "a/b/c");
   EXPECT_TRUE(fs::is_directory(folder_ / "a/b/c"));

@@ -24,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kScenes = fs::path(RELOOK_SOURCE_DIR) / "scenes";
-const std::string kScene = (kScenes / "spheres/spheres.gltf").string();
 
 /// What `work` says in a process of its own that has entered the sandbox.
 std::string said_within(const Reach& reach, const std::function<std::string()>& work) {

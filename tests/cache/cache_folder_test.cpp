@@ -23,13 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kScene = (fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
 const std::string kSomeHash(32, '7');
-
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
 
 void expect_line(const ProgramResult& result, int code, const std::string& part) {
   EXPECT_EQ(result.exit_code, code) << result.output;

@@ -16,8 +16,6 @@ namespace relook {
 
 class Cli : public testing::Test {
  protected:
-  static inline const std::string kScene =
-      (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
   /// A colour and a drag.
   static constexpr const char* kJournal = R"({"relook": "journal/1", "steps": [
   {"name": "green", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
@@ -26,10 +24,6 @@ class Cli : public testing::Test {
     [{"op": "replace", "path": "/nodes/CentralSphere/translation", "value": [0.1, 1, 0]}],
     [{"op": "replace", "path": "/nodes/CentralSphere/translation", "value": [0.2, 1, 0]}]]}]})";
 
-  static ProgramResult relook(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-    return run_program(arguments);
-  }
   static void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
   static Json read_json(const std::filesystem::path& path) {
     const Bytes bytes = read_file(path);

@@ -12,8 +12,6 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
 constexpr const char* kJournal = R"({"relook": "journal/1", "steps": [
   {"edit": [{"op": "replace", "path": "/lights/Lamp/intensity", "value": 40}]}]})";
 

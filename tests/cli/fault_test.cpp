@@ -22,13 +22,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
-
 std::string long_journal(int steps) {
   std::string text = R"({"relook": "journal/1", "steps": [)";
   for (int i = 0; i < steps; ++i)

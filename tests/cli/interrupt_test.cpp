@@ -23,13 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-const std::string kScene = (fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
 constexpr std::size_t kFramesAtWork = 2;  // that a replay may still finish after a signal
-
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
 
 /// The exit code.
 int end_of(pid_t child) {

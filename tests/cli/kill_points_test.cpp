@@ -17,7 +17,6 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
 constexpr const char* kModes[] = {"kill", "after", "eio", "enospc", "short"};
 
 bool does_all() {

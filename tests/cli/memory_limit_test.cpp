@@ -13,7 +13,6 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
 constexpr double kAbove = 1.05;  // what a peak may be of its limit
 
 class MemoryLimit : public testing::Test {

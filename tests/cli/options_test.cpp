@@ -13,13 +13,6 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
-
 struct Row {
   std::vector<std::string> command;  // its first word is the verb; C, J and R: a cache, a journal and a run folder
   std::string option;

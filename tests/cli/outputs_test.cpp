@@ -20,12 +20,7 @@ namespace fs = std::filesystem;
 
 const fs::path kSpheres = fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres";
 
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
-
-const char* const kJournal = R"({"relook": "journal/1", "steps": [
+const char* const kPictureJournal = R"({"relook": "journal/1", "steps": [
   {"name": "picture", "edit": [{"op": "add", "path": "/images/New", "value": {"uri": "paint.png"}}]},
   {"name": "green", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                               "value": [0.1, 0.9, 0.1, 1]}]}]})";
@@ -36,7 +31,7 @@ class Outputs : public testing::Test {
   void SetUp() override {
     fs::copy(kSpheres, at("scene"), fs::copy_options::recursive);
     fs::copy_file(fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres.png", at("paint.png"));
-    std::ofstream(at("j.json")) << kJournal;
+    std::ofstream(at("j.json")) << kPictureJournal;
     std::ofstream(at("patch.json")) << kPatch;
     std::ofstream(at("mine.txt")) << "mine";
     scene_ = at("scene/spheres.gltf");

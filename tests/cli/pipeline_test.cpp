@@ -11,9 +11,7 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
-const char* const kJournal = R"({"relook": "journal/1", "steps": [
+const char* const kJournalOfAllKinds = R"({"relook": "journal/1", "steps": [
   {"name": "green", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                               "value": [0.1, 0.9, 0.1, 1]}]},
   {"name": "twin", "edit": [{"op": "copy", "from": "/nodes/CentralSphere", "path": "/nodes/Twin"},
@@ -23,11 +21,6 @@ const char* const kJournal = R"({"relook": "journal/1", "steps": [
     [{"op": "replace", "path": "/nodes/Twin/translation", "value": [1.0, 1, 0.7]}]]},
   {"name": "glass", "wedge": {"path": "/materials/Glass/extensions/KHR_materials_ior/ior", "values": [1.2, 1.7]}},
   {"name": "gone", "edit": [{"op": "remove", "path": "/nodes/Twin"}]}]})";
-
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -39,7 +32,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 class Pipeline : public testing::Test {
  protected:
   void SetUp() override {
-    std::ofstream(folder_ / "j.json") << kJournal;
+    std::ofstream(folder_ / "j.json") << kJournalOfAllKinds;
     ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}).exit_code, 0);
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "color/expression/expression.h"
@@ -21,11 +20,11 @@
 #include "physics/phong.h"
 #include "physics/sheen.h"
 #include "physics/thin_film.h"
+#include "pi.h"
 
 namespace relook {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 template <class S>
 using Vector = std::conditional_t<std::is_same_v<S, float>, Direction, Triple>;
 

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "pi.h"
 #include "test_scenes.h"
 
 namespace relook {
-
-inline constexpr double kPi = std::numbers::pi;
 
 /// What the ray from `eye` to `target` brings: the middle of a picture of one pixel.
 [[nodiscard]] inline Rgba seen(SceneBuilder& scene, Point eye, Point target, std::uint32_t max_depth = 6) {

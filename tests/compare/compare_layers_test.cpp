@@ -9,8 +9,6 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
 class CompareLayers : public testing::Test {
  protected:
   CompareLayers() {

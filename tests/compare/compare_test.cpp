@@ -10,8 +10,6 @@
 namespace relook {
 namespace {
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
 const char* const kJournal = R"({"relook": "journal/1", "steps": [
   {"name": "green", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                               "value": [0.1, 0.9, 0.1, 1]}]},

@@ -11,7 +11,7 @@
 namespace relook {
 namespace {
 
-const std::filesystem::path kSpheres = std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres";
+const std::filesystem::path kSpheresFolder = std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres";
 
 /// glTF nodes of spheres.gltf by name, and what else an export has by name.
 Json& named(Json& items, const std::string& name) {
@@ -29,7 +29,7 @@ std::size_t index_of(const Json& items, const std::string& name) {
 class JournalDiff : public testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::copy(kSpheres, folder_ / "scene", std::filesystem::copy_options::recursive);
+    std::filesystem::copy(kSpheresFolder, folder_ / "scene", std::filesystem::copy_options::recursive);
     const Bytes bytes = read_file(folder_ / "scene/spheres.gltf");
     original_ = parse_json(text_of(bytes), "spheres.gltf");
   }

@@ -33,8 +33,6 @@ colorspaces:
         - !<ExponentTransform> {value: [2, 2, 2, 1], direction: inverse}
 )";
 
-const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-
 class DisplayViews : public testing::Test {
  protected:
   void SetUp() override { std::ofstream(at("config.ocio")) << kConfig; }

@@ -39,10 +39,6 @@ class ExposedRun : public testing::Test {
       {"name": "glass", "wedge": {"path": "/materials/Glass/extensions/KHR_materials_ior/ior", "values": [1.2, 1.7]}}]})";
     ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}).exit_code, 0);
   }
-  static ProgramResult relook(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-    return run_program(arguments);
-  }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] ProgramResult replay(const std::string& run, const std::vector<std::string>& further) const {
     std::vector<std::string> arguments{"replay", at("c"), at("j.json"), "-o", at(run), "--progress", "none"};
@@ -56,7 +52,6 @@ class ExposedRun : public testing::Test {
   void expect_same_pixels(const std::string& a, const std::string& b) const {
     EXPECT_EQ(compare_frames(decode_exr(at(a)), decode_exr(at(b))).pixels_different, 0U) << a;
   }
-  const std::string kScene = (fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
   const std::vector<std::string> kStems{"0000", "0001", "0002_01", "0002_02"};
   ScratchFolder folder_{"exposure"};
 };

@@ -17,7 +17,7 @@ constexpr std::size_t kPixels = 37;  // no multiple of a vector
 using Colors = std::vector<LightColor>;
 
 /// Four sums: the first of 8 bytes a value at most, the second of more, the third without light, the fourth negative.
-PackedSums some_sums(std::uint32_t seed = 7) {
+PackedSums random_sums(std::uint32_t seed = 7) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0, 1);
   TileSums sums(4, kPixels);
@@ -48,7 +48,7 @@ void expect_pixels(TileLayers& layers, const PackedSums& sums, const Colors& col
 
 TEST(TileLayers, give_the_pixels_of_any_colours_after_any_others) {
   set_float_mode();
-  const PackedSums sums = some_sums();
+  const PackedSums sums = random_sums();
   EXPECT_LE(sums.shapes()[0].width, 8);
   EXPECT_GT(sums.shapes()[1].width, 8);
   for (const std::uint32_t samples : {1U, 7U, 64U}) {
@@ -70,7 +70,7 @@ TEST(TileLayers, give_the_pixels_of_any_colours_after_any_others) {
 }
 
 TEST(TileLayers, know_what_they_show) {
-  const PackedSums sums = some_sums();
+  const PackedSums sums = random_sums();
   Colors colors(4, {1, 1, 1});
   TileLayers layers;
   TileLayers::Working working;
@@ -89,14 +89,14 @@ TEST(TileLayers, know_what_they_show) {
 TEST(TileLayers, that_forget_are_those_of_other_sums) {
   TileLayers layers;
   const Colors colors(4, {2, 3, 4});
-  expect_pixels(layers, some_sums(), colors, 2);
+  expect_pixels(layers, random_sums(), colors, 2);
   layers.forget();
   EXPECT_TRUE(layers.empty());
-  expect_pixels(layers, some_sums(8), colors, 2);
+  expect_pixels(layers, random_sums(8), colors, 2);
 }
 
 TEST(TileLayers, take_room_for_lights_that_are_on) {
-  const PackedSums sums = some_sums();
+  const PackedSums sums = random_sums();
   TileLayers layers;
   EXPECT_EQ(layers.bytes(), 0U);
   TileLayers::Working working;

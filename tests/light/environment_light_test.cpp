@@ -8,17 +8,16 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <numbers>
 #include <random>
 
 #include "base/files.h"
 #include "light/luminance.h"
+#include "pi.h"
 #include "scene/texture/decode_pyramid.h"
 
 namespace relook {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 using Image = std::shared_ptr<const TexturePyramid>;
 
@@ -85,13 +84,6 @@ double integral(const TexturePyramid& image, std::uint32_t fine, const std::func
     sum += row * sine;
   }
   return sum * 2 * kPi * kPi / width / height;
-}
-
-/// Point i of n of a Hammersley set.
-Uv point(std::uint32_t i, std::uint32_t n) {
-  std::uint32_t reversed = 0;
-  for (std::uint32_t bit = 0; bit < 24; ++bit) reversed |= (i >> bit & 1U) << (23 - bit);
-  return {(static_cast<float>(i) + 0.5F) / static_cast<float>(n), static_cast<float>(reversed) * 0x1p-24F};
 }
 
 std::vector<Direction> random_ways(int count) {
@@ -206,7 +198,7 @@ TEST(EnvironmentLight, SamplesFollowTheirDensity) {
   constexpr std::uint32_t kColumns = 80, kRows = 40, kPoints = 1 << 18, kFine = 8;
   std::vector<double> shares(kColumns * kRows), expected(kColumns * kRows);
   for (std::uint32_t i = 0; i < kPoints; ++i) {
-    const auto sun = light.sample(point(i, kPoints));
+    const auto sun = light.sample(even_point(i, kPoints));
     ASSERT_TRUE(sun);
     ASSERT_EQ(sun->density, light.density(sun->way));
     const Uv uv = environment_uv(sun->way);
@@ -233,7 +225,7 @@ TEST(EnvironmentLight, SamplesEstimateTheSuns) {
     constexpr std::uint32_t kPoints = 1 << 14;
     double sum = 0, squares = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i)
-      if (const auto sun = light.sample(point(i, kPoints))) {
+      if (const auto sun = light.sample(even_point(i, kPoints))) {
         const double term = value(sun->way) / static_cast<double>(sun->density);
         sum += term / kPoints;
         squares += term * term / kPoints;
@@ -296,7 +288,7 @@ TEST(EnvironmentLight, RealImages) {
     constexpr std::uint32_t kPoints = 1 << 14;
     double sum = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i)
-      if (const auto sun = light.sample(point(i, kPoints)))
+      if (const auto sun = light.sample(even_point(i, kPoints)))
         sum += static_cast<double>(luminance(light.suns(sun->way)) / sun->density) / kPoints;
     EXPECT_NEAR(sum / total, 1, 0.01) << name;
   }

@@ -10,11 +10,10 @@
 #include <vector>
 
 #include "light/point_set.h"
+#include "pi.h"
 
 namespace relook {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Sums of a mean whose error is estimated from the values themselves.
 struct Mean {

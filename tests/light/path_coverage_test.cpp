@@ -12,8 +12,6 @@
 namespace relook {
 namespace {
 
-Vec grey(double x) { return {x, x, x}; }
-
 Json covering(Json material, double coverage) {
   material["alphaMode"] = "BLEND";
   material["doubleSided"] = true;

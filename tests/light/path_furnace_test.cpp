@@ -41,8 +41,6 @@ Measured plane_in_furnace(const Json& material, double nv, std::uint32_t samples
 std::string name_of(const char* what, double nv, double roughness = 1) {
   return std::string(what) + ", cosine " + std::to_string(nv) + ", roughness " + std::to_string(roughness);
 }
-Vec grey(double x) { return {x, x, x}; }
-
 TEST(PathFurnace, a_diffuse_plane_shows_its_albedo_without_noise) {
   for (const double nv : kCosines) {
     const Measured seen = plane_in_furnace(lambert(0.6), nv);

@@ -12,8 +12,6 @@ namespace {
 
 const Json kDown = shining({0, -1, 0});
 
-Vec grey(double x) { return {x, x, x}; }
-
 Json sized(const char* type, double intensity, const char* what, double size) {
   Json light = {{"type", type}, {"intensity", intensity}};
   light["extras"]["relook"][what] = size;

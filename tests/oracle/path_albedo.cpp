@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "pi.h"
 
 namespace relook {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 }  // namespace
 

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 
 #include "path_reference_surface.h"
+#include "pi.h"
 
 namespace relook {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kOffset = 1e-6;
 const Vec kBlack(0, 0, 0);
 

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "pi.h"
 
 namespace relook {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-double largest(const Vec& c) { return std::max({c.x, c.y, c.z}); }
-double schlick(double cosine) { return std::pow(1 - std::min(cosine, 1.0), 5); }
+double schlick_weight(double cosine) { return std::pow(1 - std::min(cosine, 1.0), 5); }
 
 /// D V NL
 double ggx(const Vec& n, const Vec& view, double nv, const Vec& way, double alpha) {
@@ -42,7 +40,7 @@ Vec tilted(const Vec& axis, double cosine, double turn) {
 
 Vec PathReference::Surface::dielectric(double cosine) const {
   const double ior = std::max(double{material->ior}, 1.0), r0 = std::pow((ior - 1) / (ior + 1), 2);
-  double weight = schlick(cosine);
+  double weight = schlick_weight(cosine);
   if (optics.volume)
     weight = std::clamp((exact_reflectance(std::min(cosine, 1.0), inside ? 1 / ior : ior) - r0) / (1 - r0), 0.0, 1.0);
   Vec f0 = color_of(material->specular_color) * r0;
@@ -53,7 +51,7 @@ Vec PathReference::Surface::dielectric(double cosine) const {
 
 Vec PathReference::Surface::reflectance(double cosine) const {
   const double ior = std::max(double{material->ior}, 1.0), r0 = std::pow((ior - 1) / (ior + 1), 2);
-  double weight = schlick(cosine);
+  double weight = schlick_weight(cosine);
   if (optics.volume)
     weight = std::clamp((exact_reflectance(std::min(cosine, 1.0), inside ? 1 / ior : ior) - r0) / (1 - r0), 0.0, 1.0);
   const double metallic = material->metallic;
@@ -64,7 +62,7 @@ double PathReference::Surface::entered() const {
   return 1 - largest(dielectric(inside ? std::max(nv, ng.dot(view)) : nv));
 }
 
-double PathReference::Surface::below_coat() const { return 1 - coat() * (0.04 + 0.96 * schlick(nv)); }
+double PathReference::Surface::below_coat() const { return 1 - coat() * (0.04 + 0.96 * schlick_weight(nv)); }
 
 Vec PathReference::Surface::diffuse(const Vec& way) const {
   const double nl = n.dot(way);
@@ -79,7 +77,7 @@ Vec PathReference::Surface::specular(const Vec& way) const {
 
 Vec PathReference::Surface::coating(const Vec& way) const {
   const double vh = std::max(view.dot((view + way).normalized()), 0.0);
-  const double value = coat() * (0.04 + 0.96 * schlick(vh)) * ggx(n, view, nv, way, coat_alpha);
+  const double value = coat() * (0.04 + 0.96 * schlick_weight(vh)) * ggx(n, view, nv, way, coat_alpha);
   return {value, value, value};
 }
 

@@ -2,18 +2,15 @@
 // and "blinn-phong".
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "pi.h"
 #include "reference_tracer.h"
 
 namespace relook {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 double positive(double x) { return std::max(x, 0.0); }
-double largest(Vec c) { return std::max({c.x, c.y, c.z}); }
 double schlick(double cosine) { return std::pow(1 - cosine, 5); }
 /// GGX distribution times height-correlated Smith visibility.
 double ggx(double nh, double nl, double nv, double alpha) {

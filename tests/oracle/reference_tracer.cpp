@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "pi.h"
 
 namespace relook {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kOffset = 1e-5;
 
 Imath::V3f single(Vec v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }

@@ -5,6 +5,7 @@
 #pragma once
 #include <ImathVec.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -19,6 +20,8 @@ namespace relook {
 using Vec = Imath::V3d;  // also a colour: Imath multiplies componentwise
 
 [[nodiscard]] inline Vec color_of(Color c) { return {c.x, c.y, c.z}; }
+[[nodiscard]] inline Vec grey(double x) { return {x, x, x}; }
+[[nodiscard]] inline double largest(const Vec& c) { return std::max({c.x, c.y, c.z}); }
 
 /// A triangle of a living object in world space.
 struct WorldTriangle {

@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <random>
 
 #include "base/math.h"
+#include "pi.h"
 
 namespace relook::test {
 
-inline constexpr double kPi = std::numbers::pi;
 using Wide = Imath::V3d;
 
 struct Alphas {

@@ -15,14 +15,14 @@ namespace {
 
 using namespace test;
 
-constexpr std::array kAlphas{0.0045, 0.05, 0.25, 0.6, 1.0};
-constexpr std::array kCosines{1.0, 0.7, 0.2, 0.05};
+constexpr std::array kGlassAlphas{0.0045, 0.05, 0.25, 0.6, 1.0};
+constexpr std::array kGlassCosines{1.0, 0.7, 0.2, 0.05};
 constexpr std::array kEtas{1.5, 1 / 1.5, 1.05, 1 / 1.05, 2.4};
 
 template <class F>
 void for_each_boundary(const F& f) {
-  for (const double alpha : kAlphas)
-    for (const double cosine : kCosines)
+  for (const double alpha : kGlassAlphas)
+    for (const double cosine : kGlassCosines)
       for (const double eta : kEtas) {
         SCOPED_TRACE(testing::Message() << "alpha " << alpha << ", cosine " << cosine << ", eta " << eta);
         f(Alphas{alpha, alpha}, view_at(cosine, 0.1), eta);
@@ -61,7 +61,7 @@ TEST(RoughRefraction, SamplesOfABucketBringTheLightOfItsMembers) {
   constexpr int kSamples = 10000;
   for (const int k : {-8, -5, -3, -1})
     for (const float member : {1.0F, 1.95F})
-      for (const double cosine : kCosines)
+      for (const double cosine : kGlassCosines)
         for (const double eta : {1.5, 1 / 1.5}) {
           const AlphaBucket bucket{static_cast<std::int8_t>(k)};
           const float alpha = bucket.lower() * member, q = bucket.representative(), bend = static_cast<float>(eta);

@@ -19,11 +19,6 @@ struct PlanCase {
   std::vector<std::string> view;
 };
 
-ProgramResult relook(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-  return run_program(arguments);
-}
-
 Json read_json(const std::filesystem::path& path) {
   const Bytes bytes = read_file(path);
   return parse_json(text_of(bytes), path.string());

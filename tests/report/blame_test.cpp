@@ -119,10 +119,6 @@ TEST(Blame, says_how_a_change_gets_to_the_pixel) {
 class BlameProgram : public testing::Test {
  protected:
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  static ProgramResult relook(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-    return run_program(arguments);
-  }
   void SetUp() override {
     std::ofstream(at("j.json")) << kJournal;
     ASSERT_EQ(relook({"preprocess", kSpheres, "-o", at("cache"), "--resolution", "96x54", "--quiet"}).exit_code, 0);

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Pointer = Json::json_pointer;
 
-constexpr const char* kJournal = R"({"relook": "journal/1", "steps": [
+constexpr const char* kRunJournal = R"({"relook": "journal/1", "steps": [
   {"name": "red", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                             "value": [0.9, 0.3, 0.2, 1]}]},
   {"name": "up", "edit": [{"op": "replace", "path": "/nodes/CentralSphere/translation", "value": [0, 1.3, 0]}]},
@@ -61,7 +61,7 @@ class ForgedNotes : public testing::Test {
   static void SetUpTestSuite() {
     folder_ = std::make_unique<ScratchFolder>("forged_notes");
     const std::string scene = (fs::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
-    std::ofstream(at("j.json")) << kJournal;
+    std::ofstream(at("j.json")) << kRunJournal;
     ASSERT_EQ(
         run_program({RELOOK_PROGRAM, "preprocess", scene, "-o", at("c"), "--resolution", "32x18", "--quiet"}).exit_code,
         0);

@@ -50,10 +50,6 @@ class Resume : public testing::Test {
   }
   static std::string scene() { return (kSource / "scenes/spheres/spheres.gltf").string(); }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  static ProgramResult relook(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-    return run_program(arguments);
-  }
   [[nodiscard]] std::vector<std::string> command(const std::string& run) const {
     return {"replay", at("c"), at("j.json"), "-o", at(run), "--progress", "none"};
   }

@@ -18,8 +18,6 @@ namespace relook {
 
 class RunFolderTest : public testing::Test {
  protected:
-  static inline const std::string kScene =
-      (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
   static Json color_step(const std::string& name, double red) {
     return {{"name", name},
             {"edit",
@@ -57,10 +55,6 @@ class RunFolderTest : public testing::Test {
     ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}).exit_code, 0);
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
-  static ProgramResult relook(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), RELOOK_PROGRAM);
-    return run_program(arguments);
-  }
   void write_journal(const std::string& name, const std::vector<Json>& steps) const {
     std::ofstream(at(name)) << Json{{"relook", "journal/1"}, {"steps", steps}}.dump();
   }

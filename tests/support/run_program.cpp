@@ -72,6 +72,11 @@ ProgramResult run_program(const std::vector<std::string>& command) {
   return result;
 }
 
+ProgramResult relook(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), RELOOK_PROGRAM);
+  return run_program(arguments);
+}
+
 MeasuredResult measure_relook(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), {"python3", "-c", kMeasure, RELOOK_PROGRAM});
   const ProgramResult result = run_program(arguments);

@@ -30,6 +30,11 @@ struct ProgramResult {
 
 /// Runs `command[0]` (searched for in PATH) without standard input and waits for it.
 [[nodiscard]] ProgramResult run_program(const std::vector<std::string>& command);
+/// The same of the program that is tested.
+ProgramResult relook(std::vector<std::string> arguments);
+
+/// For tests to which one scene is as good as another.
+inline const std::string kScene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
 
 struct MeasuredResult {
   int exit_code = -1;

@@ -2,30 +2,17 @@
 // rectangle), Dish (a disk that the camera sees), the emission of Glow with an image, and an environment whose image
 // has a sun; Ground and Ball are dull, MirrorBall is rough metal, GlassBall a volume, Pane thin glass, Veil blended,
 // Coated bumpy under its coat, Cloth has sheen, Phong and Sign have the other models.
-#include <cmath>
-
+#include "scene_parts.h"
 #include "test_scenes.h"
 
 namespace relook {
 namespace {
 
-bool odd_cell(std::uint32_t x, std::uint32_t y, std::uint32_t cell) { return ((x / cell + y / cell) & 1U) != 0; }
-
-Rgba picture_texel(std::uint32_t x, std::uint32_t y) {
+Rgba checked_texel(std::uint32_t x, std::uint32_t y) {
   return Rgba(odd_cell(x, y, 2) ? 0.8F : 0.35F, 0.2F + 0.03F * static_cast<float>(x), 0.25F, 1);
 }
-Rgba second_picture_texel(std::uint32_t x, std::uint32_t y) {
-  return odd_cell(x, y, 4) ? Rgba(0.1F, 0.3F, 0.7F, 1) : Rgba(0.9F, 0.8F, 0.3F, 1);
-}
-Rgba veil_texel(std::uint32_t x, std::uint32_t y) { return Rgba(0.9F, 0.5F, 0.3F, odd_cell(x, y, 4) ? 0.35F : 0.8F); }
-Rgba leaf_texel(std::uint32_t x, std::uint32_t y) { return Rgba(0.2F, 0.6F, 0.15F, odd_cell(x, y, 4) ? 1.0F : 0.0F); }
-Rgba bump_texel(std::uint32_t x, std::uint32_t y) {
-  const auto wave = [](std::uint32_t i) { return 0.5F + 0.12F * std::sin(static_cast<float>(i) * 0.785398F); };
-  return Rgba(wave(x), wave(y + 3), 0.95F, 1);
-}
-Rgba second_bump_texel(std::uint32_t x, std::uint32_t y) {
-  const Rgba bump = bump_texel(y * 2, x);
-  return Rgba(bump.g, bump.r, 0.9F, 1);
+Rgba checked_leaf_texel(std::uint32_t x, std::uint32_t y) {
+  return Rgba(0.2F, 0.6F, 0.15F, odd_cell(x, y, 4) ? 1.0F : 0.0F);
 }
 /// Roughness in [0.1, 0.9], across several buckets; metallic 0 or 1.
 Rgba rough_texel(std::uint32_t x, std::uint32_t y) {
@@ -55,10 +42,10 @@ Textures add_textures(SceneBuilder& scene) {
   scene.image("SkyImage", single_level_image(16, sky_texel));
   scene.image("SecondSkyImage", single_level_image(16, second_sky_texel));
   scene.image("EvenSkyImage", single_level_image(16, even_sky_texel));
-  textures.picture = scene.texture("Picture", scene.image("PictureImage", single_level_image(16, picture_texel)));
+  textures.picture = scene.texture("Picture", scene.image("PictureImage", single_level_image(16, checked_texel)));
   scene.texture("Second", scene.image("SecondImage", single_level_image(16, second_picture_texel)));
   textures.veil = scene.texture("Veil", scene.image("VeilImage", single_level_image(16, veil_texel)));
-  scene.texture("Leaves", scene.image("LeafImage", single_level_image(16, leaf_texel)));
+  scene.texture("Leaves", scene.image("LeafImage", single_level_image(16, checked_leaf_texel)));
   textures.bumps = scene.texture("Bumps", scene.image("BumpImage", single_level_image(16, bump_texel)));
   scene.image("SecondBumpImage", single_level_image(16, second_bump_texel));
   textures.rough = scene.texture("Rough", scene.image("RoughImage", single_level_image(16, rough_texel)));
@@ -67,11 +54,7 @@ Textures add_textures(SceneBuilder& scene) {
   return textures;
 }
 
-Json plain(float r, float g, float b, float metallic, float roughness) {
-  return {{"pbrMetallicRoughness",
-           {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
-}
-Json textured(int texture, float roughness) {
+Json pictured(int texture, float roughness) {
   Json material = plain(1, 1, 1, 0, roughness);
   material["pbrMetallicRoughness"]["baseColorTexture"]["index"] = texture;
   return material;
@@ -81,14 +64,8 @@ Json other_model(Json material, const char* model) {
   return material;
 }
 
-/// Turned by `degrees` about +y.
-Json placed(int mesh, float x, float y, float z, float degrees = 0) {
-  const float half = degrees * 0.00872665F;
-  return {{"mesh", mesh}, {"translation", {x, y, z}}, {"rotation", {0, std::sin(half), 0, std::cos(half)}}};
-}
-
 void add_roles(SceneBuilder& scene, const Textures& textures) {
-  const int ground = scene.mesh("Ground", plane_mesh(5, 2), scene.material("Ground", textured(textures.picture, 0.8F)));
+  const int ground = scene.mesh("Ground", plane_mesh(5, 2), scene.material("Ground", pictured(textures.picture, 0.8F)));
   const int ball =
       scene.mesh("Ball", sphere_mesh(0.55F, 14, 9), scene.material("Matte", plain(0.7F, 0.2F, 0.15F, 0, 0.5F)));
   const int mirror =
@@ -111,7 +88,7 @@ void add_surfaces(SceneBuilder& scene, const Textures& textures) {
   pane["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.8;
   scene.node("Pane", placed(scene.mesh("Pane", card_mesh(0.4F, 0.5F), scene.material("Pane", pane)), -0.5F, 0.51F, 1,
                             -20));
-  Json veil = textured(textures.veil, 0.6F);
+  Json veil = pictured(textures.veil, 0.6F);
   veil["alphaMode"] = "BLEND";
   veil["doubleSided"] = true;
   scene.node("Veil", placed(scene.mesh("Veil", card_mesh(0.4F, 0.4F), scene.material("Veil", veil)), -1.5F, 0.45F, 1.3F,
@@ -131,7 +108,7 @@ void add_surfaces(SceneBuilder& scene, const Textures& textures) {
       {{"diffuse", {0.5, 0.6, 0.4}}, {"specular", {0.3, 0.3, 0.3}}, {"shininess", 20}, {"reflection", 0.3}});
   const int phong_mesh = scene.mesh("Phong", box_mesh(Point(0.25F, 0.4F, 0.25F)), scene.material("Phong", phong));
   scene.node("Phong", placed(phong_mesh, 1.9F, 0.41F, -0.6F, 20));
-  const Json sign = other_model(textured(textures.picture, 1), "unlit");
+  const Json sign = other_model(pictured(textures.picture, 1), "unlit");
   scene.node("Sign",
              placed(scene.mesh("Sign", card_mesh(0.3F, 0.3F), scene.material("Sign", sign)), -2.1F, 1, -0.8F, 20));
   Json glow = plain(0.2F, 0.2F, 0.2F, 0, 0.6F);

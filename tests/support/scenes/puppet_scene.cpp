@@ -1,15 +1,11 @@
 // A scene whose meshes are morphed and skinned.
 #include <cmath>
 
+#include "scene_parts.h"
 #include "test_scenes.h"
 
 namespace relook {
 namespace {
-
-Json plain(float r, float g, float b, float metallic, float roughness) {
-  return {{"pbrMetallicRoughness",
-           {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
-}
 
 /// A target that squeezes a ball along y and one that makes waves, the first with its normals.
 Mesh with_targets(Mesh mesh) {

@@ -1,33 +1,18 @@
 // What the three scenes of the edit matrix contain.
-#include <cmath>
-
+#include "scene_parts.h"
 #include "test_scenes.h"
 
 namespace relook {
 namespace {
 
-bool odd_cell(std::uint32_t x, std::uint32_t y, std::uint32_t cell) { return ((x / cell + y / cell) & 1U) != 0; }
-
 Rgba picture_texel(std::uint32_t x, std::uint32_t y) {
   const float shade = odd_cell(x, y, 2) ? 0.8F : 0.35F;
   return Rgba(shade, 0.1F + 0.05F * static_cast<float>(x % 16), 0.2F + 0.04F * static_cast<float>(y % 16), 1);
-}
-Rgba second_picture_texel(std::uint32_t x, std::uint32_t y) {
-  return odd_cell(x, y, 4) ? Rgba(0.1F, 0.3F, 0.7F, 1) : Rgba(0.9F, 0.8F, 0.3F, 1);
 }
 /// Leaves: round islands of alpha 1 in alpha 0.
 Rgba leaf_texel(std::uint32_t x, std::uint32_t y) {
   const float dx = static_cast<float>(x % 8) - 3.5F, dy = static_cast<float>(y % 8) - 3.5F;
   return Rgba(0.2F, 0.6F, 0.15F, dx * dx + dy * dy < 9 ? 1.0F : 0.0F);
-}
-Rgba veil_texel(std::uint32_t x, std::uint32_t y) { return Rgba(0.9F, 0.5F, 0.3F, odd_cell(x, y, 4) ? 0.35F : 0.8F); }
-Rgba bump_texel(std::uint32_t x, std::uint32_t y) {
-  const auto wave = [](std::uint32_t i) { return 0.5F + 0.12F * std::sin(static_cast<float>(i) * 0.785398F); };
-  return Rgba(wave(x), wave(y + 3), 0.95F, 1);
-}
-Rgba second_bump_texel(std::uint32_t x, std::uint32_t y) {
-  const Rgba bump = bump_texel(y * 2, x);
-  return Rgba(bump.g, bump.r, 0.9F, 1);
 }
 
 /// Images and textures that every scene has; the numbers are glTF indices.
@@ -57,17 +42,6 @@ Json textured(int texture, float factor = 1, float roughness = 0.8F) {
             {"baseColorTexture", {{"index", texture}}},
             {"metallicFactor", 0},
             {"roughnessFactor", roughness}}}};
-}
-
-Json plain(float r, float g, float b, float metallic, float roughness) {
-  return {{"pbrMetallicRoughness",
-           {{"baseColorFactor", {r, g, b, 1}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
-}
-
-/// Turned by `degrees` about +y.
-Json placed(int mesh, float x, float y, float z, float degrees = 0) {
-  const float half = degrees * 0.00872665F;
-  return {{"mesh", mesh}, {"translation", {x, y, z}}, {"rotation", {0, std::sin(half), 0, std::cos(half)}}};
 }
 
 Json phong(float reflection, float refraction, float transparency, float shininess) {
