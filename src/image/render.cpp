@@ -103,6 +103,7 @@ class Merger {
     for (std::uint32_t i = 0; i < record.paths.size(); ++i)
       ids.push_back(image_.paths.intern(record.paths.words(PathId(i))));
     for (PathId& path : record.trees.paths) path = ids[path.index()];
+    record.trees.hits.shrink_to_fit();  // most of what is kept of an image
     image_.trees[tile] = std::move(record.trees);
     if (tunnels_ == nullptr || tunnels_->around.empty()) return;
     if (record.classes) rename_classes(record, ids);

@@ -20,6 +20,12 @@ Color clamped(const Rgba& texel) {
   return {texel.r > 0 ? texel.r : 0.0F, texel.g > 0 ? texel.g : 0.0F, texel.b > 0 ? texel.b : 0.0F};
 }
 
+/// Sine of a direction's polar angle, as densities are divided by.
+float clamped_sine(const Direction& way) {
+  const float sine = std::sqrt(way.x * way.x + way.z * way.z);
+  return sine > kLeastSine ? sine : kLeastSine;
+}
+
 /// Sine of the polar angle in the middle of a row of texels; the row's solid angle is proportional to it.
 float row_sine(std::uint32_t row, std::uint32_t height) {
   const std::uint32_t from_pole = std::min(row, height - 1 - row);
@@ -120,10 +126,10 @@ EnvironmentLight::EnvironmentLight(std::shared_ptr<const TexturePyramid> image) 
   for (std::uint32_t row = 0; row < rows_; ++row)
     for (std::uint32_t x = 0; x < width_; ++x) suns += static_cast<double>(weights_[std::size_t{row} * width_ + x]);
   sun_share_ = suns / texels.light;
-  suns_ = cells_of_suns();
   // Each texel weighs 1 / (width height) in the integral of the interpolation over uv.
   const double scale = static_cast<double>(width_) * height_ / (suns * kSteradiansOfUv);
   for (float& weight : weights_) weight = static_cast<float>(static_cast<double>(weight) * scale);
+  suns_ = cells_of_suns();
 }
 
 void EnvironmentLight::weigh_suns(const std::vector<float>& luminances) {
@@ -156,11 +162,12 @@ GridDistribution EnvironmentLight::cells_of_suns() const {
     const double area = row == 0 || row == height_ ? 0.5 : 1.0;
     for (std::uint32_t column = 0; column < width_; ++column) {
       const std::uint32_t left = (column == 0 ? width_ : column) - 1;
+      const std::int64_t above = std::int64_t{row} - 1;
+      const std::array<float, 4> corners{weight(left, above), weight(column, above), weight(left, above + 1),
+                                         weight(column, above + 1)};
       double sum = 0;
-      for (const std::int64_t below : {0, 1})
-        for (const std::uint32_t x : {left, column})
-          sum += static_cast<double>(weight(x, std::int64_t{row} - 1 + below));
-      if (sum > 0) cells.push_back({row, column, sum * area});
+      for (const float corner : corners) sum += static_cast<double>(corner);
+      if (sum > 0) cells.push_back({row, column, sum * area, corners});
     }
   }
   return GridDistribution(cells);
@@ -176,18 +183,17 @@ EnvironmentLight::Parts EnvironmentLight::parts(const Direction& way) const {
 std::optional<EnvironmentLight::Sun> EnvironmentLight::sample(Uv u) const {
   if (suns_.empty()) return std::nullopt;
   const GridDistribution::Choice cell = suns_.choose(static_cast<double>(u.y), static_cast<double>(u.x));
-  const std::uint32_t left = (cell.column == 0 ? width_ : cell.column) - 1;
-  const auto corner = [&](std::uint32_t column, std::int64_t below) {
-    return static_cast<double>(weight(column, std::int64_t{cell.row} - 1 + below));
-  };
-  const double a = corner(left, 0), b = corner(cell.column, 0), c = corner(left, 1), d = corner(cell.column, 1);
+  const auto corner = [&](std::size_t i) { return static_cast<double>(cell.corners[i]); };
+  const double a = corner(0), b = corner(1), c = corner(2), d = corner(3);
   const double y = sample_linear(a + b, c + d, cell.rest_row);
   const double x = sample_linear(a + (c - a) * y, b + (d - b) * y, cell.rest_column);
   // Texels' middles stand at halves; a half cell at a pole begins or ends there.
   const double top = cell.row == 0 ? 0.0 : cell.row - 0.5, tall = cell.row == 0 || cell.row == height_ ? 0.5 : 1.0;
   const double along = (cell.column - 0.5 + x) / width_;
   Sun sun{environment_way(along < 0 ? along + 1 : along, (top + y * tall) / height_), 0};
-  sun.density = density(sun.way);
+  // As density() has it for this direction, but for the rounding of the way to texels and back.
+  const auto value = static_cast<float>((a + (c - a) * y) * (1 - x) + (b + (d - b) * y) * x);
+  sun.density = value / clamped_sine(sun.way);
   if (!(sun.density > 0)) return std::nullopt;
   return sun;
 }
@@ -208,8 +214,7 @@ float EnvironmentLight::density(const Direction& way) const {
   const float across = x - x0, down = y - y0;
   const float top = weight(l, row) * (1.0F - across) + weight(r, row) * across;
   const float bottom = weight(l, row + 1) * (1.0F - across) + weight(r, row + 1) * across;
-  const float sine = std::sqrt(way.x * way.x + way.z * way.z);
-  return (top * (1.0F - down) + bottom * down) / (sine > kLeastSine ? sine : kLeastSine);
+  return (top * (1.0F - down) + bottom * down) / clamped_sine(way);
 }
 
 }  // namespace relook

@@ -8,6 +8,40 @@ namespace {
 
 constexpr double kBelowOne = 1.0 - 0x1p-53;
 
+/// Appends for each n-th of [0, 1), and for 1, the first of n indices that its numbers may choose. `end(i)`: sum of the
+/// weights up to and with i.
+template <class End>
+void append_starts(std::size_t n, const End& end, std::vector<std::uint32_t>& starts) {
+  std::uint32_t index = 0;
+  for (std::size_t part = 0; part <= n; ++part) {
+    const double place = static_cast<double>(part) / static_cast<double>(n) * end(n - 1);
+    while (index + 1 < n && end(index) <= place) ++index;
+    starts.push_back(index);
+  }
+}
+
+template <class End>
+DiscreteDistribution::Choice chosen(double number, std::size_t n, const End& end, const std::uint32_t* starts) {
+  const auto part = static_cast<std::size_t>(number * static_cast<double>(n));
+  const double total = end(n - 1), place = number * total;
+  std::size_t low = starts[std::min(part, n - 1)], high = starts[std::min(part + 1, n)];
+  // The part may be a neighbour's by rounding, and an end may be as far as the last weight.
+  while (low > 0 && end(low - 1) > place) --low;
+  while (high + 1 < n && end(high) <= place) ++high;
+  // The first whose end lies behind the place, or `high`.
+  while (low < high) {
+    const std::size_t middle = (low + high) / 2;
+    if (end(middle) > place)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  std::size_t index = low;
+  while (index > 0 && !(end(index) > end(index - 1))) --index;  // numbers of 1 and above: the last with a weight
+  const double begin = index == 0 ? 0.0 : end(index - 1), width = end(index) - begin;
+  return {static_cast<std::uint32_t>(index), width / total, std::clamp((place - begin) / width, 0.0, kBelowOne)};
+}
+
 }  // namespace
 
 DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
@@ -15,30 +49,12 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
   double sum = 0;
   for (const double weight : weights) ends_.push_back(sum += std::max(weight, 0.0));
   if (empty()) return;
-  // The first index that numbers of each n-th of [0, 1) may choose.
-  const auto n = static_cast<double>(ends_.size());
   starts_.reserve(ends_.size() + 1);
-  std::uint32_t index = 0;
-  for (std::size_t part = 0; part <= ends_.size(); ++part) {
-    const double place = static_cast<double>(part) / n * sum;
-    while (index + 1 < ends_.size() && ends_[index] <= place) ++index;
-    starts_.push_back(index);
-  }
+  append_starts(ends_.size(), [this](std::size_t i) { return ends_[i]; }, starts_);
 }
 
 DiscreteDistribution::Choice DiscreteDistribution::choose(double number) const {
-  const auto part = static_cast<std::size_t>(number * static_cast<double>(ends_.size()));
-  const double place = number * total();
-  std::size_t low = starts_[std::min(part, ends_.size() - 1)], high = starts_[std::min(part + 1, ends_.size())];
-  // The part may be a neighbour's by rounding, and an end may be as far as the last weight.
-  while (low > 0 && ends_[low - 1] > place) --low;
-  while (high + 1 < ends_.size() && ends_[high] <= place) ++high;
-  const auto at = std::upper_bound(ends_.begin() + static_cast<std::ptrdiff_t>(low),
-                                   ends_.begin() + static_cast<std::ptrdiff_t>(high), place);
-  auto index = static_cast<std::size_t>(at - ends_.begin());
-  while (index > 0 && !(ends_[index] > ends_[index - 1])) --index;  // numbers of 1 and above: the last with a weight
-  const double begin = index == 0 ? 0.0 : ends_[index - 1], width = ends_[index] - begin;
-  return {static_cast<std::uint32_t>(index), width / total(), std::clamp((place - begin) / width, 0.0, kBelowOne)};
+  return chosen(number, ends_.size(), [this](std::size_t i) { return ends_[i]; }, starts_.data());
 }
 
 double DiscreteDistribution::probability(std::uint32_t index) const {
@@ -46,19 +62,17 @@ double DiscreteDistribution::probability(std::uint32_t index) const {
 }
 
 GridDistribution::GridDistribution(std::span<const Cell> cells) {
-  std::vector<double> totals, weights;
+  std::vector<double> totals;
   for (std::size_t i = 0; i < cells.size();) {
-    Row row{cells[i].row, {}, {}};
-    weights.clear();
-    for (; i < cells.size() && cells[i].row == row.row; ++i) {
-      if (!(cells[i].weight > 0)) continue;
-      row.columns.push_back(cells[i].column);
-      weights.push_back(cells[i].weight);
-    }
-    if (weights.empty()) continue;
-    row.distribution = DiscreteDistribution(weights);
-    totals.push_back(row.distribution.total());
-    row_tables_.push_back(std::move(row));
+    Row row{cells[i].row, parts_.size(), 0};
+    double sum = 0;
+    for (; i < cells.size() && cells[i].row == row.row; ++i)
+      if (cells[i].weight > 0) parts_.push_back({sum += cells[i].weight, cells[i].column, cells[i].corners});
+    row.size = parts_.size() - row.first;
+    if (row.size == 0) continue;
+    append_starts(row.size, [&](std::size_t k) { return parts_[row.first + k].end; }, starts_);
+    totals.push_back(sum);
+    row_tables_.push_back(row);
   }
   rows_ = DiscreteDistribution(totals);
 }
@@ -66,8 +80,12 @@ GridDistribution::GridDistribution(std::span<const Cell> cells) {
 GridDistribution::Choice GridDistribution::choose(double number_row, double number_column) const {
   const DiscreteDistribution::Choice row = rows_.choose(number_row);
   const Row& table = row_tables_[row.index];
-  const DiscreteDistribution::Choice column = table.distribution.choose(number_column);
-  return {table.row, table.columns[column.index], row.probability * column.probability, row.rest, column.rest};
+  const Part* parts = &parts_[table.first];
+  const DiscreteDistribution::Choice column = chosen(
+      number_column, table.size, [parts](std::size_t k) { return parts[k].end; }, &starts_[table.first + row.index]);
+  const Part& part = parts[column.index];
+  return {table.row,    part.column, row.probability * column.probability, row.rest, column.rest,
+          part.corners};
 }
 
 double sample_linear(double a, double b, double number) {

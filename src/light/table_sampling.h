@@ -2,6 +2,8 @@
 // to begin to look, so a choice costs a few steps whatever n is, and growing numbers choose growing indices: points
 // that are stratified stay so. Pure functions of weights and numbers: the same bits on every machine.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -41,11 +43,13 @@ class GridDistribution {
   struct Cell {
     std::uint32_t row = 0, column = 0;
     double weight = 0;
+    std::array<float, 4> corners{};  // what else is to be known of a cell once it is chosen
   };
   struct Choice {
     std::uint32_t row = 0, column = 0;
     double probability = 0;
     double rest_row = 0, rest_column = 0;  // what is left of the numbers: [0, 1)
+    std::array<float, 4> corners{};
   };
 
   GridDistribution() = default;
@@ -58,13 +62,20 @@ class GridDistribution {
   [[nodiscard]] Choice choose(double number_row, double number_column) const;
 
  private:
+  /// A cell that may be chosen, all that a choice reads of it in one place: tables are larger than a processor's caches.
+  struct Part {
+    double end = 0;  // sum of the weights of its row up to and with it
+    std::uint32_t column = 0;
+    std::array<float, 4> corners{};
+  };
   struct Row {
     std::uint32_t row = 0;
-    std::vector<std::uint32_t> columns;
-    DiscreteDistribution distribution;  // over `columns`
+    std::size_t first = 0, size = 0;  // of its parts
   };
   std::vector<Row> row_tables_;
-  DiscreteDistribution rows_;  // over `row_tables_`
+  std::vector<Part> parts_;            // row by row
+  std::vector<std::uint32_t> starts_;  // of each row, as DiscreteDistribution's: one more than its parts
+  DiscreteDistribution rows_;          // over `row_tables_`
 };
 
 /// The place in [0, 1] whose density is a (1 - x) + b x over its mean. Requires a, b >= 0; 0 where

@@ -68,13 +68,14 @@ std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& bl
   if (!ray_light.is_soft()) {
     term = lamp_term(node, ray_light, light);
   } else if (node.lobes != kNoNode) {
-    const auto sample = sample_light(ray_light, node);
+    const LightLink& link = block.lights[node.first_light + place];
+    const auto sample = link.sample != kNoNode ? block.samples[link.sample] : sample_light(ray_light, node);
     if (!sample) return std::nullopt;
     term.emplace();
     term->way = sample->way;
-    term->radiance = sample->radiance * lamp_share(light, node.point.position);
+    term->radiance = radiance_of(ray_light, *sample) * lamp_share(light, node.point.position);
     const VertexLobes& lobes = block.lobes[node.lobes];
-    const bool is_turned = is_turned_on(scene, block, block.lights[node.first_light + place]);
+    const bool is_turned = is_turned_on(scene, block, link);
     // No ray of a reflecting lobe leads below the triangle; samples may, where the smooth surface is lit.
     const bool is_above = sample->way.dot(node.point.geometric) > 0;
     constexpr std::array kLobes{Lobe::diffuse, Lobe::specular, Lobe::coat, Lobe::transmission};

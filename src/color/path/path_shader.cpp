@@ -261,6 +261,7 @@ struct PathShader::Impl {
     for (std::uint32_t i = 0; i < block->nodes.size(); ++i) {
       const RayNode& node = block->nodes[i];
       if (node.object.is_none() || is_black(weights[i])) continue;
+      std::uint32_t program = kNoNode;
       for (std::uint32_t place = 0; place < places.of_light.size(); ++place) {
         const ShadowState state = block->lights[node.first_light + place].state;
         if ((state != ShadowState::open && state != ShadowState::filtered) || !is_wanted(places.of_light[place], node))
@@ -269,7 +270,8 @@ struct PathShader::Impl {
         if (!term) continue;
         all.push_back(i);
         terms.push_back(*term);
-        batch_of.push_back(number_of(key_of(PathPiece::light, node.object, node.point.inside)));
+        if (program == kNoNode) program = number_of(key_of(PathPiece::light, node.object, node.point.inside));
+        batch_of.push_back(program);
       }
     }
     run(false, all, terms, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {

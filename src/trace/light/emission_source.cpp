@@ -59,19 +59,23 @@ EmissionSource::EmissionSource(const TextureSlot& image, std::vector<Placed> obj
   std::ranges::sort(place_of_);
 }
 
-std::optional<EmissionSource::Sample> EmissionSource::sample(const Point& from, Uv u) const {
+std::optional<LightSample> EmissionSource::sample(const Point& from, Uv u) const {
   const auto emitter = light_.sample(from, u);
   if (!emitter) return std::nullopt;
   const auto place = static_cast<std::size_t>(std::ranges::upper_bound(first_, emitter->triangle) - first_.begin()) - 1;
-  const RayObject& object = *objects_[place].object;
   Hit hit{emitter->triangle - first_[place], emitter->b1, emitter->b2};
-  if (object.flipped) std::swap(hit.u, hit.v);
+  if (objects_[place].object->flipped) std::swap(hit.u, hit.v);
+  return LightSample{emitter->way, emitter->distance, emitter->density, static_cast<std::uint32_t>(place), hit};
+}
+
+Color EmissionSource::radiance(std::uint32_t place, const Hit& hit) const {
+  if (image_.kind == TextureKind::none) return {1, 1, 1};
+  const RayObject& object = *objects_[place].object;
   const Mesh& mesh = *object.mesh;
   const std::array<std::uint32_t, 3>& corner = mesh.triangles[hit.primitive];
   const Point local = mesh.positions[corner[0]] * (1.0F - hit.u - hit.v) + mesh.positions[corner[1]] * hit.u +
                       mesh.positions[corner[2]] * hit.v;
-  return Sample{emitter->at, emitter->way, emitter->distance, emitter->density,
-                emission_at(image_, object, hit, local)};
+  return emission_at(image_, object, hit, local);
 }
 
 float EmissionSource::density(ObjectId object, std::uint32_t primitive, const Point& from, const Direction& way,

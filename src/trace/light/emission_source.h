@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "light/emission_light.h"
+#include "trace/light/light_sample.h"
 #include "trace/ray_object.h"
-#include "trace/tree/ray_tree.h"
 
 namespace relook {
 
@@ -21,13 +21,9 @@ class EmissionSource {
   EmissionSource(const TextureSlot& image, std::vector<Placed> objects);
 
   /// A point that shines towards `from`.
-  struct Sample {
-    Point at;
-    Direction way;
-    float distance = 0, density = 0;
-    Color radiance;  // of unit colour and intensity
-  };
-  [[nodiscard]] std::optional<Sample> sample(const Point& from, Uv u) const;
+  [[nodiscard]] std::optional<LightSample> sample(const Point& from, Uv u) const;
+  /// What a sample's point sends out for unit colour and intensity.
+  [[nodiscard]] Color radiance(std::uint32_t place, const Hit& hit) const;
   /// With which sample() gives the point that a ray meets; 0 for objects that it does not know.
   [[nodiscard]] float density(ObjectId object, std::uint32_t primitive, const Point& from, const Direction& way,
                               float distance) const;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "trace/light/light_sample.h"
+#include "trace/light/ray_light.h"
 
 namespace relook {
 
@@ -11,25 +11,23 @@ namespace {
 
 /// What a segment runs to, as seen from a hit.
 struct Target {
-  Direction way;             // any length
+  Direction way;  // any length
   bool has_place = true;
-  Point at{0, 0, 0};         // where it has one
-  float reach = 1;           // how far of the way
+  Point at{0, 0, 0};  // where it has one
+  float reach = 1;    // how far of the way
 };
 
-std::optional<Target> target_of(const RayNode& node, const RayLight& light) {
-  const Point& from = node.point.position;
-  if (!light.is_soft()) {
-    if (!is_sampled(light, node)) return std::nullopt;
-    if (traits_of(light.kind).has_place) return Target{light.position - from, true, light.position};
-    return Target{-light.direction, false};
-  }
-  const auto sample = sample_light(light, node);
-  if (!sample) return std::nullopt;
-  if (sample->distance == std::numeric_limits<float>::infinity()) return Target{sample->way, false};
+std::optional<Target> target_of_lamp(const RayNode& node, const RayLight& light) {
+  if (!is_sampled(light, node)) return std::nullopt;
+  if (traits_of(light.kind).has_place) return Target{light.position - node.point.position, true, light.position};
+  return Target{-light.direction, false};
+}
+
+Target target_of(const RayNode& node, const RayLight& light, const LightSample& sample) {
+  if (sample.distance == std::numeric_limits<float>::infinity()) return Target{sample.way, false};
   // Surfaces that shine would block the segments to them: those end a little before.
   constexpr float kBefore = 1.0F - 0x1p-12F;
-  return Target{sample->way, true, from + sample->way * sample->distance, light.emission ? kBefore : 1.0F};
+  return Target{sample.way, true, node.point.position + sample.way * sample.distance, light.emission ? kBefore : 1.0F};
 }
 
 /// Does light from behind reach a hit by samples of its own? Where segments of the hit before it stand for all that is
@@ -44,11 +42,17 @@ bool lights_back(const RayNode& node, const RayLight& light) {
 ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
   const SurfacePoint& point = node.point;
   ShadowSegment segment;
-  const auto target = target_of(node, light);
+  std::optional<Target> target;
+  if (light.is_soft()) {
+    segment.sample = sample_light(light, node);
+    if (segment.sample) target = target_of(node, light, *segment.sample);
+  } else {
+    target = target_of_lamp(node, light);
+  }
   if (!target) return segment;
   const Direction& to_light = target->way;
   segment.faces = point.shading.dot(to_light) > 0;
-  segment.is_soft = light.is_soft();
+  if (!segment.faces && !node.has_back) return segment;
   const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));
   if (segment.faces) {
     // A light near the horizon of the triangle is judged from the smooth surface.
@@ -57,6 +61,7 @@ ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
     segment.origin = point.position + point.lift * share + point.geometric * point.offset;
   } else {
     segment.faces = height < 0 && lights_back(node, light);
+    if (!segment.faces) return segment;
     segment.origin = point.position - point.geometric * point.offset;
   }
   segment.direction = target->has_place ? target->at - segment.origin : to_light;

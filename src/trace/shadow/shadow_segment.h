@@ -2,6 +2,7 @@
 // surfaces on it need for their tints.
 #pragma once
 #include <cstddef>
+#include <optional>
 
 #include "trace/tree/tree_block.h"
 
@@ -13,11 +14,11 @@ struct ShadowSegment {
   Point origin{0, 0, 0};
   Direction direction{0, 0, 1};
   float t_max = 1;
-  bool is_soft = false;  // to a light that rays may meet
+  std::optional<LightSample> sample;  // of a light with a size, which rays may meet
 
   [[nodiscard]] Ray ray() const {
     Ray ray{origin, direction, t_max};
-    ray.from_light = !is_soft;
+    ray.from_light = !sample;
     return ray;
   }
 };

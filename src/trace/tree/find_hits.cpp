@@ -69,20 +69,22 @@ void HitFinder::find_filters(const RayNode& node, const PathNode& stored) {
 void HitFinder::find_children(const RayNode& node, const PathNode& stored, const SpawnedRay& now) {
   const RayObject& object = g_.scene.object(node.object);
   const bool respawns = has_flag(node.object, RayChange::respawns);
-  const RayObject& then = respawns ? change_.before[change_.before_index[node.object.index()]] : object;
+  const RayObject& then = respawns ? change_.value_before(node.object) : object;
   if (!g_.rule().may_spawn(then) && stored.children() == 0) return;
-  const Spawned old = spawn(node, then, g_.rule());
-  if (old.branches != stored.branches()) refuse_trees();
-  Spawned rays = old;
-  if (respawns || now.fresnel_product != node.ray.fresnel_product) {
+  Spawned old, changed;
+  spawn(node, then, g_.rule(), old);
+  if (old.branches() != stored.branches()) refuse_trees();
+  const bool may_differ = respawns || now.fresnel_product != node.ray.fresnel_product;
+  if (may_differ) {
     RayNode as_now = node;
     as_now.ray = now;
-    rays = spawn(as_now, object, g_.rule());
+    spawn(as_now, object, g_.rule(), changed);
   }
+  const Spawned& rays = may_differ ? changed : old;
   for (std::size_t b = 0; b < kBranches; ++b) {
     const auto branch = static_cast<Branch>(b);
     if (!stored.has_child(branch)) continue;
-    const bool goes_as_before = rays.branches.has(branch) && rays.ray(branch).is_same_way(old.ray(branch));
+    const bool goes_as_before = rays.branches().has(branch) && rays.ray(branch).is_same_way(old.ray(branch));
     if (goes_as_before)
       find_node(old.ray(branch), rays.ray(branch));
     else

@@ -47,8 +47,9 @@ class Expander {
       }
     }
     if (!grower_.grow().rule().may_spawn(grower_.grow().scene.object(node.object)) && node.children() == 0) return index;
-    const Spawned rays = grower_.spawned(index);
-    if (rays.branches != node.branches()) refuse_trees();
+    Spawned rays;
+    grower_.find_spawned(index, rays);
+    if (rays.branches() != node.branches()) refuse_trees();
     grower_.for_each_child(index, rays, [&](Branch, const SpawnedRay& child) { return expand(child, index); });
     return index;
   }

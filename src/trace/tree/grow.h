@@ -89,6 +89,12 @@ struct RayChange {
   [[nodiscard]] std::uint8_t flags(ObjectId id) const {
     return objects.empty() ? std::uint8_t{0} : objects[id.index()];
   }
+  /// Of a flagged object that was in trees.
+  [[nodiscard]] const RayObject& value_before(ObjectId id) const { return before[before_index[id.index()]]; }
+  /// Has no object any flag?
+  [[nodiscard]] bool only_lights() const {
+    return before.empty() && moved_after.empty() && shadows_before.empty() && shadows_after.empty();
+  }
   /// Makes room for the flags of that many objects.
   void reserve(std::size_t count) {
     objects.resize(count, 0);

@@ -52,15 +52,15 @@ class Grower {
     return whole;
   }
 
-  Spawned spawned(std::uint32_t index) {
+  /// `rays`: empty.
+  void find_spawned(std::uint32_t index, Spawned& rays) {
     RayNode& node = b_.nodes[index];
-    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.rule());
+    spawn(node, g_.scene.object(node.object), g_.rule(), rays);
     node.cut = rays.cut;
     if (rays.lobes) {
       node.lobes = static_cast<std::uint32_t>(b_.lobes.size());
       b_.lobes.push_back(*rays.lobes);
     }
-    return rays;
   }
 
   /// Calls grow_child(branch, ray) -> index for each spawned ray, in order.
@@ -68,7 +68,7 @@ class Grower {
   void for_each_child(std::uint32_t index, const Spawned& rays, const GrowChild& grow_child) {
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
-      if (!rays.branches.has(branch)) continue;
+      if (!rays.branches().has(branch)) continue;
       const std::uint32_t child = grow_child(branch, rays.ray(branch));
       b_.nodes[index].child[b] = child;
     }
@@ -90,6 +90,10 @@ class Grower {
     link.state = filters.empty() ? ShadowState::open : ShadowState::filtered;
     link.first = static_cast<std::uint32_t>(b_.filters.size());
     link.filters = static_cast<std::uint32_t>(filters.size());
+    if (segment.sample) {
+      link.sample = static_cast<std::uint32_t>(b_.samples.size());
+      b_.samples.push_back(*segment.sample);
+    }
     b_.filters.insert(b_.filters.end(), filters.begin(), filters.end());
     complete_filters(g_.scene, b_.nodes[index], segment, b_.filters.data() + link.first, filters.size());
   }
@@ -149,7 +153,9 @@ class Grower {
     set_hit(index, meeting.object, meeting.hit);
     b_.nodes[index].t = meeting.t;
     if (!g_.rule().may_spawn(g_.scene.object(meeting.object))) return;
-    for_each_child(index, spawned(index), [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
+    Spawned rays;
+    find_spawned(index, rays);
+    for_each_child(index, rays, [&](Branch, const SpawnedRay& ray) { return trace(ray, index, counters); });
   }
 
   [[nodiscard]] const std::vector<LightId>& lights() const { return g_.scene.light_order(); }

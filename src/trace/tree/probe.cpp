@@ -73,7 +73,8 @@ class Prober {
   }
 
   bool probe_children(const RayNode& node, const PathNode& stored, History history) {
-    const Spawned rays = spawn(node, g_.scene.object(node.object), g_.rule());
+    Spawned rays;
+    spawn(node, g_.scene.object(node.object), g_.rule(), rays);
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
       if (stored.has_child(branch) && probe(rays.ray(branch), history.child(branch))) return true;

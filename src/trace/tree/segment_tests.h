@@ -36,7 +36,7 @@ class SegmentTests {
     [[nodiscard]] bool any() const { return before || after; }
   };
   /// Requires: the state is not facing_away.
-  [[nodiscard]] Shadow tests_shadow(ShadowState state, bool touched, const Ray& ray) {
+  Shadow tests_shadow(ShadowState state, bool touched, const Ray& ray) {
     const bool is_blocked = state == ShadowState::blocked;
     Shadow tests;
     if (!touched) {

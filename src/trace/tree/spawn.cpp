@@ -30,8 +30,8 @@ Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, f
 class Spawner {
  public:
   /// `may_spawn`: is it deep enough for another generation?
-  Spawner(const RayNode& node, const RayObject& object, bool may_spawn)
-      : node_(node), object_(object), may_spawn_(may_spawn) {}
+  Spawner(const RayNode& node, const RayObject& object, bool may_spawn, Spawned& spawned)
+      : node_(node), object_(object), may_spawn_(may_spawn), spawned_(spawned) {}
 
   /// `side`: +1 leaves on the side of the incoming ray, -1 on the other. `fresnel`: factor towards the cut-off. Null if
   /// there is none.
@@ -58,7 +58,6 @@ class Spawner {
     return ray;
   }
   void set_may_spawn(bool may_spawn) { may_spawn_ = may_spawn; }
-  [[nodiscard]] Spawned& result() { return spawned_; }
 
  private:
   /// Null if there is none.
@@ -69,7 +68,7 @@ class Spawner {
       spawned_.cut.add(branch);
       return nullptr;
     }
-    SpawnedRay& ray = spawned_.rays[static_cast<std::size_t>(branch)];
+    SpawnedRay& ray = spawned_.add(branch);
     ray.cone_spread = node_.ray.cone_spread;
     ray.fresnel_product = product;
     ray.generation = static_cast<std::uint8_t>(node_.ray.generation + 1);
@@ -77,14 +76,13 @@ class Spawner {
     ray.channel = channel_of(branch, node_.ray.channel);
     ray.path = node_.ray.path;
     ray.path.history = child_history(node_.ray.path.history, static_cast<std::uint32_t>(branch));
-    spawned_.branches.add(branch);
     return &ray;
   }
 
   const RayNode& node_;
   const RayObject& object_;
   bool may_spawn_;
-  Spawned spawned_;
+  Spawned& spawned_;
 };
 
 
@@ -160,10 +158,10 @@ Normal coat_normal(const RayNode& node, const RayObject& object) {
   return normal_of_slot(node, object, Slot::clearcoat_normal, object.material->clearcoat_normal_scale);
 }
 
-Spawned spawn_whitted(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
+void spawn_whitted(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
   const SurfaceOptics& optics = object.optics;
-  Spawner spawner(node, object, node.ray.generation < rule.max_depth);
-  if (!optics.spawns()) return spawner.result();
+  Spawner spawner(node, object, node.ray.generation < rule.max_depth, spawned);
+  if (!optics.spawns()) return;
   const Direction d = node.ray.direction;
   const Interface interface(node, object);
   if (optics.reflects)
@@ -177,7 +175,6 @@ Spawned spawn_whitted(const RayNode& node, const RayObject& object, const SpawnR
   interface.refract(spawner, false, [](SpawnedRay*) {});
   if (optics.transparent) spawner.add_straight(Branch::transparency, 1.0F);
   interface.refract(spawner, true, [](SpawnedRay*) {});
-  return spawner.result();
 }
 
 Branch branch_of(Lobe lobe, const VertexLobes& lobes) {
@@ -265,15 +262,15 @@ void note_refraction(SpawnedRay* ray) {
 }
 
 /// One lobe is followed, and, beside it, what goes through the surface.
-Spawned spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
+void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
   const SurfaceOptics& optics = object.optics;
   const bool gathers = node.ray.path.gathers;
   // What stands behind what lets rays through is gathered, too, as far as samples of lights see through it.
   constexpr std::uint32_t kMostBehind = 8;
   const bool is_scattered = node.ray.path.density > 0;
-  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers || is_scattered ? kMostBehind : 0));
+  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers || is_scattered ? kMostBehind : 0), spawned);
   const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
-  if (gathers && !optics.refracts && !optics.transparent) return spawner.result();
+  if (gathers && !optics.refracts && !optics.transparent) return;
   const Interface interface(node, object);
   if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
   const auto bent = [&](SpawnedRay* ray) {
@@ -290,18 +287,20 @@ Spawned spawn_path(const RayNode& node, const RayObject& object, const SpawnRule
   if (is_smooth) interface.refract(spawner, false, refracted);
   if (optics.transparent) bent(spawner.add_straight(Branch::transparency, 1.0F));
   if (is_smooth) interface.refract(spawner, true, refracted);
-  if (gathers) return spawner.result();
+  if (gathers) return;
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
-  if (!lobes.any()) return spawner.result();
+  if (!lobes.any()) return;
   add_lobe_ray(spawner, node, object, lobes, rule, optics.refracts ? interface.factor(interface.reflectance()) : 1.0F);
-  spawner.result().lobes = lobes;
-  return spawner.result();
+  spawned.lobes = lobes;
 }
 
 }  // namespace
 
-Spawned spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule) {
-  return rule.integrator == Integrator::path ? spawn_path(node, object, rule) : spawn_whitted(node, object, rule);
+void spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
+  if (rule.integrator == Integrator::path)
+    spawn_path(node, object, rule, spawned);
+  else
+    spawn_whitted(node, object, rule, spawned);
 }
 
 }  // namespace relook

@@ -3,7 +3,9 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "scene/integrator.h"
 #include "trace/tree/tree_block.h"
@@ -21,16 +23,36 @@ struct SpawnRule {
   }
 };
 
-/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back. A pure function of the node,
-/// its object and the rule.
-struct Spawned {
-  std::array<SpawnedRay, kBranches> rays;
-  BranchSet branches;  // whose rays are there
+/// The rays that a hit spawns, and the branches that only the Fresnel cut-off held back.
+class Spawned {
+ public:
   BranchSet cut;
   std::optional<VertexLobes> lobes;  // of the path integrator
 
-  [[nodiscard]] const SpawnedRay& ray(Branch branch) const { return rays[static_cast<std::size_t>(branch)]; }
+  Spawned() = default;
+  Spawned(const Spawned&) = delete;
+  Spawned& operator=(const Spawned&) = delete;
+
+  /// Whose rays are there.
+  [[nodiscard]] BranchSet branches() const { return branches_; }
+  /// Requires: it is there.
+  [[nodiscard]] const SpawnedRay& ray(Branch branch) const { return slots_[static_cast<std::size_t>(branch)].ray; }
+  SpawnedRay& add(Branch branch) {
+    branches_.add(branch);
+    return *std::construct_at(&slots_[static_cast<std::size_t>(branch)].ray);
+  }
+
+ private:
+  /// Room for a ray: most hits spawn one or two, and the others are never written.
+  union Slot {
+    Slot() {}
+    SpawnedRay ray;
+  };
+  static_assert(std::is_trivially_destructible_v<SpawnedRay>);
+  std::array<Slot, kBranches> slots_;
+  BranchSet branches_;
 };
-[[nodiscard]] Spawned spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule);
+/// Adds them to `spawned`, which is empty. A pure function of the node, its object and the rule.
+void spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned);
 
 }  // namespace relook

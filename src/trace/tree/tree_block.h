@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "trace/light/light_sample.h"
 #include "trace/surface.h"
 #include "trace/tree/lobes.h"
 #include "trace/tree/path_words.h"
@@ -51,6 +52,7 @@ struct LightLink {
   ShadowState state = ShadowState::facing_away;
   std::uint32_t first = 0;    // filtered: into TreeBlock::filters; blocked and counted: into TreeBlock::blocker_words
   std::uint32_t filters = 0;  // how many, of a filtered light
+  std::uint32_t sample = kNoNode;  // into TreeBlock::samples, of a light with a size; kNoNode: not kept
 };
 
 /// A transparent surface on a shadow segment.
@@ -68,6 +70,7 @@ struct TreeBlock {
   std::vector<LightLink> lights;
   std::vector<FilterNode> filters;
   std::vector<VertexLobes> lobes;            // of the path integrator
+  std::vector<LightSample> samples;          // of it, of lights that reach a hit
   std::vector<std::uint32_t> blocker_words;  // entries of blocked lights, as in paths
 
   /// The entry of a blocked light. Requires: shadows are counted.
@@ -75,16 +78,17 @@ struct TreeBlock {
 
   /// A state to go back to: what was appended since is dropped.
   struct Mark {
-    std::size_t nodes = 0, lights = 0, filters = 0, lobes = 0, blocker_words = 0;
+    std::size_t nodes = 0, lights = 0, filters = 0, lobes = 0, samples = 0, blocker_words = 0;
   };
   [[nodiscard]] Mark mark() const {
-    return {nodes.size(), lights.size(), filters.size(), lobes.size(), blocker_words.size()};
+    return {nodes.size(), lights.size(), filters.size(), lobes.size(), samples.size(), blocker_words.size()};
   }
   void rewind(const Mark& mark) {
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(mark.nodes), nodes.end());
     lights.resize(mark.lights);
     filters.resize(mark.filters);
     lobes.resize(mark.lobes);
+    samples.resize(mark.samples);
     blocker_words.resize(mark.blocker_words);
   }
   void clear() { rewind({}); }

@@ -61,6 +61,7 @@ class Updater {
 
   /// The ray test: does the selection, where it is now, come before what is stored? If so, regrows the node.
   bool test(std::uint32_t index, const PathNode& node, bool touched) {
+    if (change_.only_lights()) return tests_.tests_ray(touched, {});
     TreeBlock& block = grower_.block();
     const SpawnedRay ray = block.nodes[index].ray;
     Ray segment = stored_segment(ray);
@@ -143,6 +144,12 @@ class Updater {
 
   /// `touched`: may the selection cross the segment, or did it so before?
   void update_light(LightUpdate l, bool touched) {
+    if (change_.only_lights() && !l.is_new) {  // its segment is worked out if surfaces on it are to be completed
+      if (l.before == ShadowState::facing_away) return;
+      tests_.tests_shadow(l.before, touched, {});
+      if (l.before == ShadowState::filtered) grower_.gathers(l.index, l.light, l.segment);
+      return keep(l);
+    }
     if (!grower_.gathers(l.index, l.light, l.segment)) {
       if (l.before == ShadowState::facing_away) return;
       note(TreeChange::all);
@@ -205,7 +212,7 @@ class Updater {
       return;
     }
     const auto passed_light = [&](ObjectId id) {
-      return change_.before[change_.before_index[id.index()]].optics.passes_light;
+      return change_.value_before(id).optics.passes_light;
     };
     if (tests.before) find_crossings(change_.shadows_before, ray, passed_light, then_);
     if (then_.empty() && now_.empty())
@@ -337,31 +344,26 @@ class Updater {
   }
 
   void update_children(std::uint32_t index, const PathNode& node, History history) {
-    const Spawned now = grower_.spawned(index);
+    Spawned now;
+    grower_.find_spawned(index, now);
     if (now.cut != node.flags.cut()) note(TreeChange::all);
-    const RayNode parent = grower_.block().nodes[index];
     const bool respawns = (change_.flags(node.object) & RayChange::respawns) != 0;
     Spawned before;
     if (respawns)
-      before = spawn(parent, change_.before[change_.before_index[node.object.index()]], grower_.grow().rule());
+      spawn(grower_.block().nodes[index], change_.value_before(node.object), grower_.grow().rule(), before);
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
-      const bool is_stored = node.has_child(branch), is_now = now.branches.has(branch);
+      const bool is_stored = node.has_child(branch), is_now = now.branches().has(branch);
       if (is_stored != is_now) note(TreeChange::all);
-      if (!is_now) {
-        if (is_stored) counters_.culled.dropped += skip_tree(stored_);
-        continue;
-      }
+      if (is_stored && !is_now) counters_.culled.dropped += skip_tree(stored_);
+      if (!is_now) continue;
       const SpawnedRay& ray = now.ray(branch);
-      const bool same_ray = !respawns || (before.branches.has(branch) && before.ray(branch).is_same_way(ray));
-      std::uint32_t child = kNoNode;
-      if (is_stored && same_ray) {
-        child = update(ray, index, history.child(branch));
-      } else {
-        if (is_stored) counters_.culled.dropped += skip_tree(stored_);
-        note(TreeChange::all);
-        child = trace(ray, index);
-      }
+      const bool same_ray = !respawns || (before.branches().has(branch) && before.ray(branch).is_same_way(ray));
+      const bool goes_as_before = is_stored && same_ray;
+      if (!goes_as_before) note(TreeChange::all);
+      if (is_stored && !goes_as_before) counters_.culled.dropped += skip_tree(stored_);
+      const std::uint32_t child =
+          goes_as_before ? update(ray, index, history.child(branch)) : trace(ray, index);
       grower_.block().nodes[index].child[b] = child;
     }
   }
