@@ -7,7 +7,7 @@ import studios
 from radiance import mean, write_hdr
 
 # Image name: file name, what makes it, and its mean luminance over the sphere.
-SURROUNDINGS = {"Studio": ("studio", studios.studio, 0.26), "StudioHighKey": ("studio-high-key", studios.high_key, 1.1),
+SURROUNDINGS = {"Studio": ("studio", studios.studio, 0.18), "StudioHighKey": ("studio-high-key", studios.high_key, 1.1),
                 "Sky": ("sky", skies.clear, 0.55), "Dusk": ("dusk", skies.dusk, 0.40)}
 
 

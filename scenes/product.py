@@ -1,5 +1,5 @@
 """The scene `product`: a wrist watch on a folded cloth, a perfume bottle on a plinth and a plastic ring on a sweep, in
-true size (metres), under a studio HDRI and two area lights. See README.md for what is where."""
+true size (metres), under a studio HDRI and three area lights. See README.md for what is where."""
 
 import math
 import os
@@ -11,8 +11,8 @@ import still_life
 import watch
 from gltf import Gltf, look_at, rounded
 
-EYE, TARGET, YFOV_DEGREES = (0.001, 0.100, 0.324), (0.001, 0.0365, 0.0), 20.1  # 35 degrees across at 16:9
-WATCH_TILT, WATCH_YAW = math.radians(54.0), math.radians(16.0)
+EYE, TARGET, YFOV_DEGREES = (-0.008, 0.084, 0.312), (0.002, 0.0365, 0.0), 19.4  # 34 degrees across at 16:9
+WATCH_TILT, WATCH_YAW = math.radians(60.0), math.radians(13.0)
 CLOTH_HEIGHT = 0.0086
 WATCH_UNIT, BOTTLE_UNIT = 0.00108, 0.00086  # metres for a millimetre of their drawings: a case of 43 mm, 15 ml
 
@@ -88,11 +88,11 @@ def _cloths(gltf, textures):
     return {"Strap": gltf.add_material("Strap", (0.20, 0.062, 0.022), 0.0, 0.48, normalTexture=leather),
             "Thread": gltf.add_material("Thread", (0.72, 0.62, 0.45), 0.0, 0.8,
                                         extensions=_sheen([0.2, 0.2, 0.2], 0.5)),
-            "Cushion": gltf.add_material("Cushion", (0.50, 0.44, 0.36), 0.0, 0.9,
-                                         extensions=_sheen([0.20, 0.19, 0.17], 0.4)),
+            "Cushion": gltf.add_material("Cushion", (0.055, 0.047, 0.042), 0.0, 0.9,
+                                         extensions=_sheen([0.10, 0.09, 0.085], 0.4)),
             "Cloth": gltf.add_material("Cloth", (0.022, 0.075, 0.092), 0.0, 0.85, normalTexture=weave(0.7),
                                        extensions=_sheen([0.12, 0.20, 0.22], 0.4)),
-            "Sweep": gltf.add_material("Sweep", (0.26, 0.215, 0.175), 0.0, 0.6, doubleSided=True)}
+            "Sweep": gltf.add_material("Sweep", (0.075, 0.078, 0.085), 0.0, 0.7, doubleSided=True)}
 
 
 def _facing(yaw, tilt):
@@ -126,14 +126,15 @@ def write(folder):
     for name, material, shape in watch.parts():
         add(name, material, shape, timepiece, WATCH_UNIT)
     add("Plinth", "Plinth", still_life.plinth(), translation=[0.041, 0.0, -0.036])
-    perfume = gltf.add_node("Perfume", translation=[0.041, 0.0121, -0.036], rotation=_facing(-0.22, 0.0))
+    perfume = gltf.add_node("Perfume", translation=[0.041, 0.0081, -0.036], rotation=_facing(-0.22, 0.0))
     for name, material, shape in still_life.bottle_parts():
         add(name, material, shape, perfume, BOTTLE_UNIT)
     add("Ring", "Ring", still_life.ring(), translation=[0.048, 0.0, 0.028])
 
     for name, kind, color, nits, size, aspect, eye, target in (
             ("Key", "rect", [1.0, 0.97, 0.92], 8.0, 0.30, 1.2, (-0.36, 0.38, 0.26), (-0.01, 0.04, 0.0)),
-            ("Rim", "disk", [0.86, 0.93, 1.0], 22.0, 0.2, 1.0, (0.34, 0.34, -0.16), (0.02, 0.04, 0.0))):
+            ("Rim", "disk", [0.86, 0.93, 1.0], 22.0, 0.2, 1.0, (0.34, 0.34, -0.16), (0.02, 0.04, 0.0)),
+            ("Backdrop", "disk", [1.0, 0.88, 0.74], 90.0, 0.06, 1.0, (0.035, 0.055, -0.10), (0.015, 0.13, -0.30))):
         gltf.add_area_light(name, kind, color, nits, size, aspect, translation=list(eye), rotation=look_at(eye, target))
     gltf.add_camera("Main", EYE, TARGET, YFOV_DEGREES)
     gltf.document["cameras"][0]["perspective"].update(znear=0.01, zfar=10.0)

@@ -33,7 +33,7 @@ def bottle_parts():
 
 
 def plinth():
-    return lathe(rounded_line([(29.0, 0.0, 0), (30.0, 0.0, 0.8), (30.0, 12.0, 1.4), (0.0, 12.0, 0)], False, 8), 160)
+    return lathe(rounded_line([(29.0, 0.0, 0), (30.0, 0.0, 0.8), (30.0, 8.0, 1.4), (0.0, 8.0, 0)], False, 8), 160)
 
 
 def ring():

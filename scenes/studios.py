@@ -52,6 +52,7 @@ def studio():
     _add_panel(rows, -128, 34, 0.62, 0.50, (7.2, 7.0, 6.7))             # large softbox, camera left
     _add_panel(rows, 122, 26, 0.34, 0.62, (4.2, 4.4, 4.8))              # large softbox, camera right
     _add_panel(rows, 78, 20, 0.07, 0.75, (11.0, 11.0, 11.4), 0.3)       # strip, right
+    _add_panel(rows, -70, 18, 0.06, 0.75, (9.0, 9.0, 9.2), 0.3)         # strip, left
     _add_panel(rows, -30, 80, 0.55, 0.45, (3.0, 3.0, 3.1), 0.3)         # overhead
     return rows
 

@@ -213,6 +213,7 @@ std::vector<Finding> read_everything(const std::filesystem::path& path, Reading&
   content.image.frame = {manifest.camera.width, manifest.camera.height, {}};
   content.objects = manifest.objects;
   content.lights = manifest.lights;
+  content.shared = manifest.shared;
   content.scene_hash = manifest.identity.scene_hash;
   content.pyramids = std::make_shared<PyramidStore>();
   content.document.assets = reading.assets;

@@ -245,7 +245,7 @@ void decode_trees(BytesView file, const CacheIdentity& identity, std::size_t gro
                                        columns.colors.begin() + static_cast<std::ptrdiff_t>(columns.next_sample));
   }
   if (!has_sums) return;
-  const std::size_t sums = content.lights + kSumsBesideLights;
+  const std::size_t sums = content.lights - content.shared + kSumsBesideLights;
   read_sums(reader, sums, image.frame, first, std::span(image.light_sums).subspan(first, last - first));
 }
 

@@ -153,6 +153,7 @@ Json content_json(const Manifest& manifest) {
                {"lights", manifest.lights},
                {"files", std::move(files)}};
   add_integrator(content, manifest.view);
+  if (manifest.shared > 0) content["shared"] = manifest.shared;
   return content;
 }
 
@@ -173,6 +174,8 @@ Manifest read_content(const JsonView& view) {
   read_integrator(view, manifest.view);
   manifest.objects = static_cast<std::uint32_t>(view.at("objects").integer(0, kMostEntities));
   manifest.lights = static_cast<std::uint32_t>(view.at("lights").integer(0, kMostEntities));
+  if (view.has("shared"))
+    manifest.shared = static_cast<std::uint32_t>(view.at("shared").integer(1, std::int64_t{manifest.lights} - 1));
   const JsonView files = view.at("files");
   files.require_array();
   if (files.size() > kMostFiles) files.fail("too many files");
@@ -288,6 +291,7 @@ Manifest manifest_of(const CacheContent& content) {
   manifest.view = content.image.view;
   manifest.objects = content.objects;
   manifest.lights = content.lights;
+  manifest.shared = content.shared;
   manifest.pieces = content.pieces;
   return manifest;
 }

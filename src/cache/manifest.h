@@ -28,7 +28,7 @@ struct Manifest {
   CacheIdentity identity;
   Camera camera;
   ViewOptions view;
-  std::uint32_t objects = 0, lights = 0;
+  std::uint32_t objects = 0, lights = 0, shared = 0;
   std::vector<CacheFile> files;  // by name
 };
 

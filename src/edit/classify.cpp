@@ -35,12 +35,14 @@ std::vector<MeshId> meshes_with(const Scene& scene, MaterialId material) {
 
 /// The class of a change of a material on one mesh.
 ChangeClass class_of(const Material& before, const Material& after, const Mesh& mesh, Integrator integrator) {
-  return class_of(effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh), integrator));
+  return class_of(
+      effect_of(before, surface_optics(before, mesh), after, surface_optics(after, mesh), mesh, integrator));
 }
 
-/// Has a material the same optics whatever mesh shows it? They depend on a mesh through its smallest alpha alone, and
-/// steadily: if both extremes agree, all meshes do.
-bool is_alike_on_all(const Material& material) {
+/// Does a material send rays on alike whatever mesh shows it? Its optics depend on a mesh through its smallest alpha
+/// alone, and steadily: if both extremes agree, all meshes do. Where coverage decides per hit, vertex colours do, too.
+bool is_alike_on_all(const Material& material, Integrator integrator) {
+  if (integrator == Integrator::path && passes_by_coverage(material)) return false;
   Mesh solid, clear;
   clear.min_alpha = 0;
   return surface_optics(material, solid) == surface_optics(material, clear);
@@ -49,7 +51,7 @@ bool is_alike_on_all(const Material& material) {
 /// The strongest class over all meshes that show the material.
 ChangeClass class_of_material(const Scene& scene, const SceneDelta::MaterialChange& change) {
   const Material& after = scene.material(change.id);
-  if (is_alike_on_all(change.before) && is_alike_on_all(after))
+  if (is_alike_on_all(change.before, scene.integrator) && is_alike_on_all(after, scene.integrator))
     return class_of(change.before, after, Mesh(), scene.integrator);
   ChangeClass strongest = ChangeClass::color;
   for (MeshId mesh : meshes_with(scene, change.id))

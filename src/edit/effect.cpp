@@ -10,7 +10,8 @@ ChangeClass class_of(const ObjectEffect& effect) {
 }
 
 ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_before, const Material& after,
-                       const SurfaceOptics& optics_after, Integrator integrator, std::span<const MaterialRow> rows) {
+                       const SurfaceOptics& optics_after, const Mesh& mesh, Integrator integrator,
+                       std::span<const MaterialRow> rows) {
   const auto differ = [&](MaterialRow::Trait trait) { return differs(trait, before, after, rows); };
   ObjectEffect effect;
   effect.moved = optics_before.cut_out != optics_after.cut_out || optics_before.culls_back != optics_after.culls_back ||
@@ -18,7 +19,8 @@ ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_befor
   effect.shadows = effect.moved || optics_before.passes_light != optics_after.passes_light;
   effect.respawns = optics_before != optics_after || (optics_after.spawns() && differ(MaterialRow::bends)) ||
                     (optics_after.coat_reflects && differ(MaterialRow::bends_coat)) ||
-                    (integrator == Integrator::path && turns_lobes(before, after, rows));
+                    (integrator == Integrator::path &&
+                     (turns_lobes(before, after, rows) || turns_coverage(before, after, mesh)));
   return effect;
 }
 
@@ -38,7 +40,8 @@ LightEffect effect_of(const Light& before, const Light& after) {
                  before.rate != after.rate || before.emission != after.emission || before.image != after.image ||
                  before.rotation != after.rotation;
   effect.reshaded = before.range != after.range || before.inner_cone != after.inner_cone ||
-                    before.outer_cone != after.outer_cone || before.excluded != after.excluded;
+                    before.outer_cone != after.outer_cone || before.excluded != after.excluded ||
+                    before.sum != after.sum;
   effect.recolored = before.color != after.color || before.intensity != after.intensity || effect.reshaded;
   return effect;
 }

@@ -18,9 +18,9 @@ struct ObjectEffect {
 [[nodiscard]] ChangeClass class_of(const ObjectEffect& effect);
 
 /// The effect of another material, or of other values of its material, on an object whose mesh makes these optics of
-/// them. Under Integrator::path `respawns` is an upper bound (turns_lobes()).
+/// them. Under Integrator::path `respawns` is an upper bound (lobe_effect.h).
 [[nodiscard]] ObjectEffect effect_of(const Material& before, const SurfaceOptics& optics_before, const Material& after,
-                                     const SurfaceOptics& optics_after,
+                                     const SurfaceOptics& optics_after, const Mesh& mesh,
                                      Integrator integrator = Integrator::whitted,
                                      std::span<const MaterialRow> rows = material_rows());
 /// The effect of all else that has changed about an object: everything but its material.

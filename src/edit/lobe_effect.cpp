@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/coverage_bucket.h"
 #include "scene/surface_optics.h"
 
 namespace relook {
@@ -52,6 +53,14 @@ Buckets coat_buckets(const Material& m) {
   return alpha_buckets(m.clearcoat_roughness, smallest.g, largest.g);
 }
 
+Buckets coverage_buckets(const Material& m, const Mesh& mesh) {
+  const auto [smallest, largest] = texture_range(m.slot(Slot::base_color));
+  const auto [low, high] = scaled(m.base_color.a, smallest.a, largest.a);
+  // Vertex colours are at most 1, and mixed likewise.
+  const float least = mesh.colors.empty() ? 1 : mesh.min_alpha * (1 - kRounding);
+  return {static_cast<int>(bucket_of_coverage(low * least)), static_cast<int>(bucket_of_coverage(high))};
+}
+
 bool is_black(const Color& color) { return color == Color(0, 0, 0); }
 
 /// Could hits get another bucket? Not if both have one and the same, nor if nothing that decides it differs.
@@ -94,6 +103,14 @@ bool turns_lobes(const Material& before, const Material& after, std::span<const 
                          before.clearcoat_roughness == after.clearcoat_roughness;
   return relook::differs(MaterialRow::bends_coat, before, after, rows) ||
          differs(coat_buckets(before), coat_buckets(after), same_coat);
+}
+
+bool turns_coverage(const Material& before, const Material& after, const Mesh& mesh) {
+  if (!passes_by_coverage(before) || !passes_by_coverage(after))
+    return passes_by_coverage(before) != passes_by_coverage(after);
+  const bool is_same_input = before.base_color.a == after.base_color.a &&
+                             before.slot(Slot::base_color) == after.slot(Slot::base_color);
+  return differs(coverage_buckets(before, mesh), coverage_buckets(after, mesh), is_same_input);
 }
 
 }  // namespace relook

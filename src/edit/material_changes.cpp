@@ -92,6 +92,8 @@ std::string describe_material_change(const Material& before, const Material& aft
   return sentence.text();
 }
 
+std::string name_of_sum(const Light& light) { return light.sum.empty() ? "of its own" : "\"" + light.sum + "\""; }
+
 std::string describe_light_change(const Light& before, const Light& after) {
   Sentence s;
   s.compare("light", before.light, after.light);
@@ -108,6 +110,7 @@ std::string describe_light_change(const Light& before, const Light& after) {
     s.compare("width", 2 * was, 2 * is);
   s.compare("visible", before.visible, after.visible);
   s.compare("rate", before.rate, after.rate);
+  if (before.sum != after.sum) s.add("sum of light " + name_of_sum(before) + " -> " + name_of_sum(after));
   s.compare("rotation", before.rotation, after.rotation);
   if (before.excluded != after.excluded) s.add("lights other objects");
   if (before.emission != after.emission) s.add("texture " + describe_slot(before.emission, after.emission));

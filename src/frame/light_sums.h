@@ -2,12 +2,12 @@
 // float32(colour_l x S_l / N) in doubles, where S_l is the exact sum of the light's terms over the pixel's N samples,
 // for a light of colour 1; R, G and B are the float32 sum of the layers, in the order of the lights, and A is
 // float32(coverage / N). Sums while they change: TileSums; as they are kept: PackedSums.
+// All pixels of a tile: image/tile_layers.h.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <span>
 
-#include "base/error.h"
 #include "base/math.h"
 #include "light/sums/packed_sums.h"
 #include "light/sums/tile_sums.h"
@@ -47,24 +47,6 @@ template <class Sums>
     color.b += of_light.z;
   }
   return color;
-}
-
-/// The same of all pixels of a tile, in less time. `pixels`: [sums.pixels()].
-inline void compose_tile(const PackedSums& sums, std::span<const LightColor> colors, std::uint32_t samples,
-                         std::span<Rgba> pixels) {
-  require(colors.size() == sums.sums() && pixels.size() == sums.pixels(), "a colour a sum, a place a pixel");
-  for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel)
-    pixels[pixel] = Rgba(0, 0, 0, static_cast<float>(sums.coverage(pixel) / samples));
-  for (std::size_t i = 0; i < colors.size(); ++i) {
-    const LightColor color = colors[i];
-    if (sums.is_zero(i) || color == LightColor{0, 0, 0}) continue;
-    for (std::size_t pixel = 0; pixel < pixels.size(); ++pixel) {
-      const Color of_light = layer(sums, i, pixel, color, samples);
-      pixels[pixel].r += of_light.x;
-      pixels[pixel].g += of_light.y;
-      pixels[pixel].b += of_light.z;
-    }
-  }
 }
 
 }  // namespace relook

@@ -13,6 +13,7 @@
 #include "image/cached_tunnels.h"
 #include "image/image_pieces.h"
 #include "image/render.h"
+#include "scene/light_sums.h"
 #include "trace/tree/path_cursor.h"
 
 namespace relook {
@@ -53,6 +54,7 @@ CacheContent cache_content(const SceneState& state, Image image, std::string sce
   content.scene_hash = std::move(scene_hash);
   content.objects = static_cast<std::uint32_t>(state.scene().objects.size());
   content.lights = static_cast<std::uint32_t>(state.scene().light_order.size());
+  content.shared = static_cast<std::uint32_t>(lights_in_shared_sums(state.scene()));
   content.image = std::move(image);
   content.storage.tunnels = tunnels.shape;
   content.around_tiles = std::move(tunnels.around);
@@ -98,7 +100,9 @@ CacheAnswer compile(CacheContent& content, std::unique_ptr<SceneState>& state) {
   } catch (const InputError& error) {
     return {CacheFault::damaged, "look.json", error.what()};
   }
-  if (state->scene().objects.size() != content.objects || state->scene().light_order.size() != content.lights)
+  const Scene& scene = state->scene();
+  if (scene.objects.size() != content.objects || scene.light_order.size() != content.lights ||
+      lights_in_shared_sums(scene) != content.shared)
     return {CacheFault::damaged, "look.json", "the look document does not have the objects and lights of the paths"};
   return {};
 }
@@ -143,6 +147,7 @@ CacheAnswer make_good(CacheContent& content, const CacheLosses& losses) {
   scene_part.pyramids = content.pyramids;
   scene_part.objects = content.objects;
   scene_part.lights = content.lights;
+  scene_part.shared = content.shared;
   scene_part.image.view = content.image.view;
   std::unique_ptr<SceneState> state;
   CacheAnswer answer = compile(scene_part, state);

@@ -45,6 +45,7 @@ TileTrees with_hits_of(const SampleTrees& fresh, TileTrees trees) {
 StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<ObjectId> atoms,
                          const RegionOptions& options, Residency& residency)
     : image_(std::move(image)),
+      layers_(image_.light_sums.size()),
       residency_(residency),
       lights_(std::move(lights)),
       classes_(options.atoms > 0),
@@ -61,7 +62,10 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
     samples_ += image_.trees[tile].paths.size();
   }
   regions_.build_groups(image_, class_of());
-  if (residency_.is_watched()) add_pieces();
+  if (residency_.is_watched()) {
+    add_pieces();
+    add_layers();
+  }
 }
 
 void StoredImage::add_pieces() {
@@ -127,6 +131,7 @@ Resident StoredImage::resident() const {
   for (const std::vector<Rgba>& colors : image_.sample_colors)
     resident.sample_colors += colors.capacity() * sizeof(Rgba);
   for (const PackedSums& sums : image_.light_sums) resident.light_sums += sums.bytes();
+  for (const TileLayers& layers : layers_) resident.light_sums += layers.bytes();
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
   resident.total = resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.light_sums +
                    resident.groups + resident.tunnels + frame;

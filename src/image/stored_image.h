@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/pool.h"
 #include "cache/residency/residency.h"
 #include "frame/changed_pixels.h"
 #include "frame/image.h"
@@ -14,6 +15,7 @@
 #include "image/path_classes.h"
 #include "image/path_index.h"
 #include "image/regions.h"
+#include "image/tile_layers.h"
 
 namespace relook {
 
@@ -78,7 +80,8 @@ class StoredImage {
 
   /// Of the path integrator (stored_sums.cpp). Tiles may be done at the same time.
   void keep_sums(std::size_t tile, PackedSums sums);
-  /// Works the pixels of a tile out from its sums, adds those that differ to `changed`. `colors`: of all sums.
+  /// Works the pixels of a tile out from its sums, adds those that differ to `changed`. `colors`: of all sums. Keeps the
+  /// tile's layers if they are worth their room.
   void refresh_from_sums(std::size_t tile, std::span<const LightColor> colors, TileMask& changed);
 
  private:
@@ -87,6 +90,11 @@ class StoredImage {
     return [this](PathId path) { return classes_.of(path); };
   }
   void add_pieces();
+  void add_layers();
+  [[nodiscard]] TileLayers::Planes planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
+                                          TileLayers::Working& working);
+  void note_layers(std::size_t tile);
+  void put_pixels(std::size_t tile, const TileLayers::Planes& planes, TileMask& changed);
   void index_paths();
   void classify_paths(const GrowScene& scene);
   void count_segments(std::size_t tile);
@@ -97,6 +105,12 @@ class StoredImage {
   [[nodiscard]] Leaves leaves_of(std::size_t tile, const std::vector<std::uint32_t>& samples) const;
 
   Image image_;
+  struct LayerWork {
+    TileLayers layers;  // of a tile whose layers are not kept
+    TileLayers::Working working;
+  };
+  std::vector<TileLayers> layers_;  // by tile; of paths
+  Pool<LayerWork> layer_work_;
   Residency& residency_;
   std::vector<LightId> lights_;
   PathIndex index_;

@@ -1,30 +1,76 @@
 // Sums of light of a stored image, tile by tile, and the pixels that they give.
 #include <cstring>
+#include <memory>
+#include <utility>
 
-#include "frame/light_sums.h"
 #include "image/stored_image.h"
 
 namespace relook {
+namespace {
+
+bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
+
+}  // namespace
+
+void StoredImage::add_layers() {
+  PieceHandler handler;
+  handler.drop = [tiles = layers_.data()](std::size_t tile) { tiles[tile] = TileLayers(); };
+  handler.may_be_missing = handler.is_derived = true;
+  residency_.add_kind(PieceKind::light_layers, layers_.size(), std::move(handler));
+}
 
 void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {
   const auto lease = residency_.use(PieceKind::light_sums, tile);
   image_.light_sums[tile] = std::move(sums);
   note_sums(residency_, tile, image_.light_sums[tile]);
+  if (residency_.is_watched())
+    residency_.forget(PieceKind::light_layers, tile);
+  else
+    layers_[tile] = TileLayers();
+}
+
+TileLayers::Planes StoredImage::planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
+                                       TileLayers::Working& working) {
+  const auto lease = residency_.use(PieceKind::light_sums, tile);
+  return layers.compose(image_.light_sums[tile], colors, image_.view.samples, working);
 }
 
 void StoredImage::refresh_from_sums(std::size_t tile, std::span<const LightColor> colors, TileMask& changed) {
-  const auto lease = residency_.use(PieceKind::light_sums, tile);
+  const auto lease = residency_.use(PieceKind::light_layers, tile);
+  TileLayers& kept = layers_[tile];
+  if (kept.shows(colors)) return;
+  const auto work = layer_work_.take([] { return std::make_unique<LayerWork>(); });
+  if (!kept.empty()) {
+    const std::size_t bytes = kept.bytes();
+    put_pixels(tile, planes(tile, colors, kept, work->working), changed);
+    if (kept.bytes() != bytes) note_layers(tile);
+    return;
+  }
+  work->layers.forget();
+  put_pixels(tile, planes(tile, colors, work->layers, work->working), changed);
+  if (!residency_.is_worth_room(PieceKind::light_layers, tile, work->layers.bytes())) return;
+  kept = std::exchange(work->layers, TileLayers());
+  note_layers(tile);
+}
+
+void StoredImage::note_layers(std::size_t tile) {
+  const std::size_t bytes = layers_[tile].bytes();
+  residency_.set(PieceKind::light_layers, tile, bytes, static_cast<double>(bytes) * kLayerSecondsPerByte);
+}
+
+void StoredImage::put_pixels(std::size_t tile, const TileLayers::Planes& planes, TileMask& changed) {
   const TileRect rect = tile_rect(tile, image_.frame.width, image_.frame.height);
-  std::vector<Rgba> pixels(rect.pixels());
-  compose_tile(image_.light_sums[tile], colors, image_.view.samples, pixels);
-  const Rgba* pixel = pixels.data();
+  const auto [red, green, blue, alpha] = planes;
+  std::size_t pixel = 0;
   for (std::uint32_t y = 0; y < rect.height(); ++y) {
     Rgba* row = &image_.frame.pixels[std::size_t{rect.y0 + y} * image_.frame.width + rect.x0];
+    std::uint64_t differs = 0;
     for (std::uint32_t x = 0; x < rect.width(); ++x, ++pixel) {
-      if (std::memcmp(&row[x], pixel, sizeof(Rgba)) == 0) continue;
-      row[x] = *pixel;
-      changed[y] |= std::uint64_t{1} << x;
+      const Rgba color(red[pixel], green[pixel], blue[pixel], alpha[pixel]);
+      differs |= std::uint64_t{same_bits(color, row[x]) ? 0U : 1U} << x;
+      row[x] = color;
     }
+    changed[y] |= differs;
   }
 }
 

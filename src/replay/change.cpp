@@ -30,7 +30,7 @@ class ObjectChanges {
     if (id.index() >= ray_scene_.size() || !scene_.object(id).alive) return;
     const RayObject& before = ray_scene_.object(id);
     if (before.alive) flag(id, effect_of(*before.material, before.optics, after, surface_optics(after, *before.mesh),
-                                          scene_.integrator));
+                                         *before.mesh, scene_.integrator));
   }
 
  private:

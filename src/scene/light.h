@@ -79,6 +79,7 @@ struct Light {
   bool visible = false;        // the camera sees it, too
   std::vector<ObjectId> excluded;  // increasing; objects that get nothing from it
   float rate = 1;              // (0, 1]; of its samples behind the first scattering
+  std::string sum;             // of light, that it shares with all that name it; "": one of its own
   MaterialId material;         // of emission
   TextureSlot emission;        // of emission: the image that multiplies colour and intensity
   std::shared_ptr<const TexturePyramid> image;  // of suns: the environment's

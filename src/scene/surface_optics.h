@@ -33,6 +33,12 @@ struct SurfaceOptics {
 
 [[nodiscard]] SurfaceOptics surface_optics(const Material& material, const Mesh& mesh);
 
+/// Under Integrator::path: does coverage alone send rays straight on? Blinn-phong's transparency sends them on, too.
+[[nodiscard]] inline bool passes_by_coverage(const Material& material) {
+  return material.alpha_mode == AlphaMode::blend &&
+         !(material.model == IlluminationModel::blinn_phong && material.transparency > 0);
+}
+
 /// The lobes that a material has under Integrator::path on its outer side: decided by factors, never by a texel. Sheen
 /// goes with the diffuse one; the power lobe of blinn-phong is `coat`.
 struct MaterialLobes {

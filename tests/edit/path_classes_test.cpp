@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "edit/effect.h"
+#include "edit/lobe_effect.h"
 #include "look_fixture.h"
 
 namespace relook {
@@ -53,6 +54,8 @@ TEST(PathClasses, color_rows) {
       {kSky + "intensity", "1", "2"},
       {kSky + "background", "null", "{\"color\": [1, 0, 0]}"},
       {kSky + "background", "{\"image\": \"BumpImage\"}", "{\"color\": [1, 0, 0]}"},
+      {"/lights/Bulb/extras/relook/sum", "\"\"", "\"set\""},
+      {"/lights/Bulb/extras/relook/sum", "\"set\"", "\"others\""},
       {kGold + "emissiveFactor", "[0.5, 0, 0]", "[1, 0, 0]"},
       {kGold + "pbrMetallicRoughness/roughnessFactor", "0.52", "0.68"},  // alpha in [1/4, 1/2)
       {kGold + "pbrMetallicRoughness/metallicFactor", "0.3", "0.7"},
@@ -74,6 +77,43 @@ TEST(PathClasses, optical_rows) {
       {"/materials/Phong/extras/relook/shininess", "8", "80"},
   };
   for (const Row& row : rows) expect_class(row, ChangeClass::optical);
+}
+
+TEST(PathClasses, coverage_turns_rays_where_its_bucket_may_be_another) {
+  const std::string base = kGold + "pbrMetallicRoughness/";
+  const auto class_of_step = [&](const std::string& before, const std::string& after) {
+    SceneState state = small_state(Integrator::path);
+    (void)apply_json(state, setting(kGold + "alphaMode", "\"BLEND\""));
+    (void)apply_json(state, before);
+    return classify(state.scene(), apply_json(state, after)).change;
+  };
+  const auto alpha = [&](const char* value) {
+    return setting(base + "baseColorFactor", "[1, 1, 1, " + std::string(value) + "]");
+  };
+  EXPECT_EQ(class_of_step(alpha("0.02"), alpha("0.98")), ChangeClass::color);
+  EXPECT_EQ(class_of_step(alpha("0.5"), setting(base + "baseColorFactor", "[1, 0, 0, 0.5]")), ChangeClass::color);
+  EXPECT_EQ(class_of_step(alpha("0.01"), alpha("0.015")), ChangeClass::color);
+  EXPECT_EQ(class_of_step(alpha("0.02"), alpha("0.01")), ChangeClass::optical);
+  EXPECT_EQ(class_of_step(alpha("0.98"), alpha("0.99")), ChangeClass::optical);
+  EXPECT_EQ(class_of_step(alpha("0.99"), alpha("1")), ChangeClass::optical);
+  EXPECT_EQ(class_of_step(alpha("0.01"), alpha("0")), ChangeClass::optical);
+}
+
+TEST(PathClasses, vertex_colours_and_texels_widen_the_buckets_of_coverage) {
+  Material before, after;
+  before.alpha_mode = after.alpha_mode = AlphaMode::blend;
+  before.base_color.a = 0.5F;
+  after.base_color.a = 0.6F;
+  Mesh mesh = square_mesh();
+  EXPECT_FALSE(turns_coverage(before, after, mesh));
+  mesh.colors.assign(mesh.positions.size(), Rgba(1, 1, 1, 1));
+  EXPECT_FALSE(turns_coverage(before, after, mesh));
+  mesh.min_alpha = 0.03F;  // 0.015 and 0.018
+  EXPECT_TRUE(turns_coverage(before, after, mesh));
+  EXPECT_FALSE(turns_coverage(before, before, mesh));
+  after.model = before.model = IlluminationModel::blinn_phong;
+  after.transparency = before.transparency = 0.5F;
+  EXPECT_FALSE(turns_coverage(before, after, mesh)) << "followed beside the surface anyway";
 }
 
 TEST(PathClasses, geometric_rows) {

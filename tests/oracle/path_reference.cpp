@@ -255,6 +255,7 @@ Vec PathReference::scattered(const Surface& s, const Ray& ray, Random& random) c
   const double u = number(random), turn = 2 * kPi * number(random);
   Ray next = ray;
   next.generation = ray.generation + 1;
+  if (ray.from == nullptr) next.straight = 0;
   next.from = s.object;
   next.is_eye = false;
   next.has_lamps = !s.is_interface();
@@ -352,10 +353,10 @@ Vec PathReference::radiance(const Ray& ray, Random& random) const {
     if (!s.blurs() || ray.gathers) own += refracted(s, ray, random);
   }
   sum += own * coverage;
-  if (coverage < 1 && ray.generation < max_depth_ + (ray.gathers ? 8 : 0)) {
+  if (coverage < 1 && ray.straight < 16) {
     Ray straight = ray;
     straight.origin = s.p - s.ng * kOffset;
-    ++straight.generation;
+    ++straight.straight;
     sum += radiance(straight, random) * (1 - coverage);
   }
   if (ray.within != nullptr && std::isfinite(ray.within->attenuation_distance))

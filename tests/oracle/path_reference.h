@@ -27,6 +27,7 @@ class PathReference {
   struct Ray {
     Vec origin, way;
     unsigned generation = 1, glossy = 0, diffuse = 0;
+    unsigned straight = 0;  // rays by coverage, the eye's or those behind the first scattering
     double fresnel = 1, floor = 0;
     const Object* from = nullptr;      // that scattered it last
     const Material* within = nullptr;  // the volume that it runs in

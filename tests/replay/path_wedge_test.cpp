@@ -2,11 +2,18 @@
 // value, forth and back, gives the bits of a full render.
 #include <gtest/gtest.h>
 
+#include "color/physics_scenes.h"
 #include "matrix_rows.h"
 #include "path_checks.h"
+#include "path_studio.h"
 
 namespace relook {
 namespace {
+
+/// Cells that are there, and holes.
+Rgba leaf_texel(std::uint32_t x, std::uint32_t y) {
+  return Rgba(0.2F, 0.6F, 0.15F, (x / 4 + y / 4) % 2 == 0 ? 1.0F : 0.0F);
+}
 
 struct Wedge {
   const char* name;
@@ -67,10 +74,49 @@ INSTANTIATE_TEST_SUITE_P(
         Wedge{"specular", "Matte/extensions/KHR_materials_specular/specularFactor", kShares},
         Wedge{"sheen_roughness", "Cloth/extensions/KHR_materials_sheen/sheenRoughnessFactor", kRoughness},
         Wedge{"alpha", "Veil/pbrMetallicRoughness/baseColorFactor/3", kShares},
+        Wedge{"alpha_of_cards", "Mirror/pbrMetallicRoughness/baseColorFactor/3", kShares, TestScene::cards},
         Wedge{"bumps", "Coated/normalTexture/scale", {0, 0.2, 0.6, 1, 1.8}},
         Wedge{"shininess", "Phong/extras/relook/shininess", {0, 1, 3, 7.9, 8, 20, 31, 32, 60, 300}},
         Wedge{"reflection", "Phong/extras/relook/reflection", {0, 0.01, 0.3, 0.7, 1}}),
     [](const testing::TestParamInfo<Wedge>& wedge) { return std::string(wedge.param.name); });
+
+TEST(PathCoverageEdits, of_textures_vertex_colours_and_other_models) {
+  // A floor and a mirror look at a sheet whose corners cover it differently.
+  PathStudio scene;
+  const int leaves = scene.texture("Leaves", scene.image("LeafImage", single_level_image(16, leaf_texel)));
+  const auto placed = [](int mesh, double x, double y) { return Json{{"mesh", mesh}, {"translation", {x, y, 0}}}; };
+  scene.node("Floor", placed(scene.mesh("Floor", plane_mesh(4, 1), scene.material("Floor", lambert(0.6))), 0, 0));
+  const int ball = scene.mesh("Ball", sphere_mesh(0.5F, 16, 10), scene.material("Metal", metal(0.2)));
+  scene.node("Ball", placed(ball, 0, 0.5));
+  Json sheet = lambert(0.7);
+  sheet["alphaMode"] = "BLEND";
+  sheet["doubleSided"] = true;
+  sheet["pbrMetallicRoughness"]["baseColorTexture"]["index"] = leaves;
+  Mesh cloth = plane_mesh(1.2F, 1);
+  for (const float alpha : {1.0F, 0.0F, 0.5F, 0.99F}) cloth.colors.emplace_back(1, 1, alpha, alpha);
+  scene.node("Cloth", placed(scene.mesh("Cloth", cloth, scene.material("Cloth", sheet)), 0.3, 1.3));
+  scene.light("Lamp", {{"type", "point"}, {"intensity", 30}}, {{"translation", {1, 3, 1}}});
+  scene.environment({{"color", {0.4, 0.5, 0.6}}});
+  scene.look_at(Point(0, 1, 4), Point(0, 0.6F, 0), 50, 24, 18);
+  const std::string base = "/materials/Cloth/pbrMetallicRoughness/";
+  expect_full_renders(
+      scene.path_state(), path_view(4),
+      {row("thinner", set(base + "baseColorFactor/3", 0.5)),
+       row("next to nothing", set(base + "baseColorFactor/3", 0.012)),
+       row("whole", set(base + "baseColorFactor/3", 1)), row("a colour", set(base + "baseColorFactor/0", 0.1)),
+       row("without a texture", removed(base + "baseColorTexture")),
+       row("with it again", add(base + "baseColorTexture", {{"index", "Leaves"}})),
+       row("at another scale", set(base + "baseColorTexture/extensions/KHR_texture_transform/scale", {3, 3})),
+       row("unlit", add("/materials/Cloth/extras/relook/model", "unlit")),
+       row("unlit and thinner", set(base + "baseColorFactor/3", 0.7)),
+       row("blinn-phong", add("/materials/Cloth/extras/relook/model", "blinn-phong")),
+       row("that lets light through", add("/materials/Cloth/extras/relook/transparency", 0.3)),
+       row("and is thinner", set(base + "baseColorFactor/3", 0.4)),
+       row("and does not", add("/materials/Cloth/extras/relook/transparency", 0)),
+       row("opaque", set("/materials/Cloth/alphaMode", "OPAQUE")),
+       row("blended again", set("/materials/Cloth/alphaMode", "BLEND"))},
+      std::nullopt);
+}
 
 TEST(PathLobes, come_and_go_with_other_edits) {
   const std::string sheen = "/materials/Cloth/extensions/KHR_materials_sheen/sheenColorFactor";
@@ -95,6 +141,7 @@ TEST(PathLobes, come_and_go_with_other_edits) {
        row("glass is rough and thick", set("/materials/Glass/extensions/KHR_materials_volume/thicknessFactor", 1),
            set("/materials/Glass/pbrMetallicRoughness/roughnessFactor", 0.4)),
        row("glass is green", set("/materials/Glass/pbrMetallicRoughness/baseColorFactor", {0.3, 0.9, 0.5, 1})),
+       row("the veil is of leaves", set("/materials/Veil/pbrMetallicRoughness/baseColorTexture/index", "Leaves")),
        row("the veil is cut", set("/materials/Veil/alphaMode", "MASK")),
        row("the veil is opaque", set("/materials/Veil/alphaMode", "OPAQUE")),
        row("the sign is lit", set("/materials/Sign/extras/relook/model", "metallic-roughness")),

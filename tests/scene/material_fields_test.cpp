@@ -50,7 +50,7 @@ ChangeClass class_of_lustre(LustrousMaterial material, unsigned traits) {
   material.lustre = 1;
   const Mesh mesh = square_mesh();
   return class_of(effect_of(before, surface_optics(before, mesh), material, surface_optics(material, mesh),
-                            Integrator::whitted, rows_with_lustre(traits)));
+                            mesh, Integrator::whitted, rows_with_lustre(traits)));
 }
 
 TEST(MaterialFields, a_row_adds_its_key_to_the_schema_with_bounds_and_default) {

@@ -236,6 +236,7 @@ TEST(PathLights, whitted_has_nothing_of_it) {
   for (const auto& [path, value] : std::initializer_list<std::pair<const char*, const char*>>{
            {"/lights/Bulb/extras/relook/radius", "1"},
            {"/lights/Bulb/extras/relook/rate", "0.5"},
+           {"/lights/Bulb/extras/relook/sum", "\"set\""},
            {"/nodes/Lamp/extras/relook/excludes", "[\"Floor\"]"},
            {"/nodes/Lamp/extras/relook/visible", "true"},
            {"/scene/extras/relook/environment/background", "{\"color\": [1, 1, 1]}"}})
@@ -264,6 +265,20 @@ TEST(PathLights, automatic_lights_come_with_an_environment_where_there_is_none) 
   (void)add_auto_lights(document, camera, Integrator::path);
   EXPECT_GT(document.look["scene"]["extras"]["relook"]["environment"]["color"][0], 0.2);
   EXPECT_EQ(document.look["lights"].size(), 6U);
+}
+
+TEST(PathLights, automatic_lights_are_discs_for_paths_alone) {
+  LookDocument document = make_look_document(small_gltf());
+  const Camera camera = choose_camera(document, "Lens", 64, 48);
+  LookDocument whitted = document;
+  (void)add_auto_lights(whitted, camera);
+  (void)add_auto_lights(document, camera, Integrator::path);
+  for (const char* name : {"key", "fill", "rim"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(whitted.look["lights"][name].value("/extras/relook/angle"_json_pointer, 0.0), 0.0);
+    EXPECT_GT(document.look["lights"][name]["extras"]["relook"]["angle"], 0.1);
+    EXPECT_EQ(document.look["lights"][name]["intensity"], whitted.look["lights"][name]["intensity"]);
+  }
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ std::string path_text(const Scene& scene, const Light& light) {
   std::set<std::uint64_t> excluded;
   for (const ObjectId id : light.excluded) excluded.insert(scene.object(id).key);
   std::string text = bits(light.radius) + bits(light.angle) + bits(light.right) + bits(light.up) + bits(light.rate) +
-                     (light.visible ? "visible " : "") + slot_text(light.emission) + bits(light.rotation);
+                     (light.visible ? "visible " : "") + slot_text(light.emission) + bits(light.rotation) + light.sum + " ";
   for (const std::uint64_t key : excluded) text += std::to_string(key) + " ";
   return text;
 }

@@ -35,7 +35,7 @@ void set_extra(Change& change, const Json& look, const std::string& owner, const
 
 void change_gift(Change& change, const Json& look, Dice& dice) {
   const std::string light = "/lights/" + dice.one_of(known(look, "lights", kLights));
-  switch (dice.below(6)) {
+  switch (dice.below(7)) {
     case 0:
       return change.set(look, light + "/color", dice.color());
     case 1:
@@ -45,6 +45,8 @@ void change_gift(Change& change, const Json& look, Dice& dice) {
     case 3:
       return change.set(look, "/lights/Lamp/range", dice.between(3, 9));
     case 4:
+      return set_extra(change, look, light, "sum", dice.one_of(std::vector<std::string>{"", "set", "others"}));
+    case 5:
       if (!has(look, "/lights/Spot")) return;
       return change.set(look, "/lights/Spot/spot/outerConeAngle", dice.between(0.3, 0.9));
     default:

@@ -16,6 +16,8 @@ std::string_view kind_name(PieceKind kind) {
       return "sample_colors";
     case PieceKind::light_sums:
       return "light_sums";
+    case PieceKind::light_layers:
+      return "light_layers";
     case PieceKind::tunnels:
       return "tunnels";
   }
@@ -103,7 +105,7 @@ void Residency::touch(PieceKind kind, std::size_t tile) {
   piece(kind, tile).use_before = std::exchange(facts.last_use, change_);
   facts.gdsf_inflation = gdsf_inflation_;
   ++facts.uses;
-  if (options_.logs_accesses) log_use(kind_name(kind), tile, facts, return_seconds(piece(kind, tile)));
+  if (options_.logs_accesses) log_use(kind_name(kind), tile, facts, return_seconds(piece(kind, tile), kinds_[index_of(kind)].handler.is_derived));
 }
 
 void Residency::note_use_of_other(std::string_view kind, std::size_t number, std::uint64_t bytes, double seconds) {

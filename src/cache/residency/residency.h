@@ -18,8 +18,8 @@
 
 namespace relook {
 
-enum class PieceKind : std::uint8_t { ray_trees, sample_colors, light_sums, tunnels };
-inline constexpr std::size_t kPieceKinds = 4;
+enum class PieceKind : std::uint8_t { ray_trees, sample_colors, light_sums, light_layers, tunnels };
+inline constexpr std::size_t kPieceKinds = 5;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
 [[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 
@@ -47,6 +47,9 @@ struct PieceHandler {
   std::function<void(std::size_t tile, BytesView)> unpack;
   std::function<void(std::size_t tile)> drop;
   bool may_be_missing = false;  // the owner can do without a copy
+  /// Worked out from other pieces sooner than read from a disk: never on one, and moves are not counted. With
+  /// may_be_missing, without pack and unpack.
+  bool is_derived = false;
   /// Makes a stored piece resident and returns its bytes; none: it cannot be had, and is missing.
   std::function<std::optional<std::uint64_t>(std::size_t tile)> fetch;
 };
@@ -203,7 +206,7 @@ class Residency {
   void list_candidates();
   bool evict(PieceKind kind, std::size_t tile);
   void evict_other(const Victim& victim);
-  [[nodiscard]] double return_seconds(const Piece& piece) const;
+  [[nodiscard]] double return_seconds(const Piece& piece, bool is_derived) const;
   void free_copy(Piece& piece);
 
   ResidencyOptions options_;

@@ -67,7 +67,7 @@ bool Residency::evict(PieceKind kind, std::size_t tile) {
   Piece& p = piece(kind, tile);
   const PieceHandler& handler = kinds_[index_of(kind)].handler;
   if (p.state != State::resident || p.pins > 0) return false;
-  if (!p.copy && !p.is_stored && spill_) {
+  if (!p.copy && !p.is_stored && spill_ && !handler.is_derived) {
     const auto start = std::chrono::steady_clock::now();
     p.copy = spill_->write(handler.pack(tile));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -78,6 +78,7 @@ bool Residency::evict(PieceKind kind, std::size_t tile) {
   p.state = p.copy ? State::spilled : p.is_stored ? State::stored : State::missing;
   p.has_left = true;
   resident_bytes_ -= p.facts.bytes;
+  if (handler.is_derived) return true;
   ++counts_.evicted[index_of(kind)];
   counts_.evicted_bytes += p.facts.bytes;
   return true;

@@ -47,7 +47,7 @@ void Residency::list_candidates() {
     for (std::size_t tile = 0; tile < kinds_[k].pieces.size(); ++tile) {
       Piece& p = kinds_[k].pieces[tile];
       if (p.state != State::resident || p.pins > 0) continue;
-      p.facts.return_seconds = return_seconds(p);
+      p.facts.return_seconds = return_seconds(p, kinds_[k].handler.is_derived);
       candidates_.push_back(
           {eviction_weight(options_.policy, p.facts, change_), static_cast<PieceKind>(k), tile, ~std::size_t{0}});
     }
@@ -60,8 +60,9 @@ void Residency::list_candidates() {
 
 /// The seconds that it takes to have the piece back: from the cache, if it is stored there; from the spill file, if
 /// there is one or if nothing says how long it takes to work the piece out again; otherwise to work it out again.
-double Residency::return_seconds(const Piece& p) const {
+double Residency::return_seconds(const Piece& p, bool is_derived) const {
   if (p.is_stored) return static_cast<double>(p.facts.bytes) * fetch_seconds_per_byte_;
+  if (is_derived) return p.rebuild_seconds;
   const double by_disk = static_cast<double>(p.facts.bytes) * seconds_per_byte_ * (p.copy ? 1 : 2);
   return spill_ || p.rebuild_seconds == 0 ? by_disk : p.rebuild_seconds;
 }
@@ -80,7 +81,7 @@ bool Residency::is_worth_room(PieceKind kind, std::size_t tile, std::uint64_t by
   PieceFacts facts = p.facts;
   if (p.rebuild_seconds == 0) facts.bytes = std::max<std::uint64_t>(bytes, 1);  // never seen
   if (fits(facts.bytes)) return true;
-  facts.return_seconds = return_seconds(p);
+  facts.return_seconds = return_seconds(p, kinds_[index_of(kind)].handler.is_derived);
   if (facts.last_use == change_) facts.last_use = p.use_before;
   const double weight = eviction_weight(options_.policy, facts, change_);
   if (candidates_.empty()) list_candidates();

@@ -27,6 +27,9 @@ Color from_lanes(const KernelRun<PathBatch>& run, std::size_t column, std::size_
   return {run.output(3 * column)[lane], run.output(3 * column + 1)[lane], run.output(3 * column + 2)[lane]};
 }
 
+/// What is multiplied by coverage counts so much.
+float surface_scale(const RayNode& node) { return node.coverage.sees_surface() ? node.coverage.scale() : 0.0F; }
+
 bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 }  // namespace
@@ -62,6 +65,9 @@ struct PathShader::Impl {
   [[nodiscard]] bool is_wanted(std::uint32_t sum, const RayNode& node) const {
     return is_whole(node) || wanted.sums[sum] != 0;
   }
+  [[nodiscard]] bool is_light_wanted(std::uint32_t place, const RayNode& node) const {
+    return is_whole(node) || wanted.lights[place] != 0;
+  }
 
   void put(std::uint32_t sum, const RayNode& node, const Color& term) {
     if (is_black(term)) return;
@@ -70,6 +76,11 @@ struct PathShader::Impl {
       sums->add(sum, pixel, term);
     else
       sums->subtract(sum, pixel, term);
+  }
+
+  /// Of the light at `place`, for unit light.
+  void put_light(std::uint32_t place, const RayNode& node, const Color& term) {
+    put(places.of_light[place], node, term * places.colors[place]);
   }
 
   [[nodiscard]] PathKey key_of(PathPiece piece, ObjectId id, bool inside) const {
@@ -148,13 +159,19 @@ struct PathShader::Impl {
       std::size_t column = 0;
       for (std::size_t b = 0; b < kBranches; ++b) {
         if (!key.children.has(static_cast<Branch>(b))) continue;
-        for (std::size_t lane = 0; lane < chosen.size(); ++lane)
-          weights[nodes[all[chosen[lane]]].child[b]] = from_lanes(kernel, column, lane);
+        for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+          const RayNode& node = nodes[all[chosen[lane]]];
+          weights[node.child[b]] = from_lanes(kernel, column, lane) * node.coverage.scale();
+        }
         ++column;
       }
-      for (std::size_t lane = 0; lane < chosen.size(); ++lane)
-        columns[all[chosen[lane]]] = {from_lanes(kernel, column, lane), from_lanes(kernel, column + 1, lane),
-                                      from_lanes(kernel, column + 2, lane), kernel.output(3 * (column + 3))[lane]};
+      for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+        const float scale = surface_scale(nodes[all[chosen[lane]]]);
+        columns[all[chosen[lane]]] = {from_lanes(kernel, column, lane) * scale,
+                                      from_lanes(kernel, column + 1, lane) * scale,
+                                      from_lanes(kernel, column + 2, lane) * scale,
+                                      kernel.output(3 * (column + 3))[lane]};
+      }
     });
     open_shares.assign(nodes.size(), 0);
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -192,10 +209,9 @@ struct PathShader::Impl {
   }
 
   void add_crossed(const RayNode& node, std::uint32_t i, std::uint32_t place) {
-    const std::uint32_t sum = places.of_light[place];
     const Light& light = scene.scene().light(scene.light_order()[place]);
-    if (!is_wanted(sum, node) || !may_meet(node, scene.light(place), light)) return;
-    if (const auto radiance = crossed(node, scene.light(place), light)) put(sum, node, weights[i] * *radiance);
+    if (!is_light_wanted(place, node) || !may_meet(node, scene.light(place), light)) return;
+    if (const auto radiance = crossed(node, scene.light(place), light)) put_light(place, node, weights[i] * *radiance);
   }
 
   /// Of a ray that leaves the scene.
@@ -206,15 +222,14 @@ struct PathShader::Impl {
       return;
     }
     const RayLight& light = scene.light(suns);
-    const std::uint32_t sun_sum = places.of_light[suns];
-    if (!is_wanted(places.sky, node) && !is_wanted(sun_sum, node)) return;
+    if (!is_wanted(places.sky, node) && !is_light_wanted(suns, node)) return;
     const Direction way = to_image(node.ray.direction, light.sine, light.cosine);
     const EnvironmentLight::Parts parts = scene.environment()->parts(way);
     if (is_wanted(places.sky, node)) put(places.sky, node, weights[i] * parts.sky);
-    if (is_black(parts.suns) || !is_wanted(sun_sum, node)) return;
+    if (is_black(parts.suns) || !is_light_wanted(suns, node)) return;
     if (!may_meet(node, light, scene.scene().light(scene.light_order()[suns]))) return;
     const float weight = path.density > 0 ? met_weight(node, light, scene.environment()->density(way)) : 1.0F;
-    put(sun_sum, node, weights[i] * parts.suns * weight);
+    put_light(suns, node, weights[i] * parts.suns * weight);
   }
 
   /// Radiance for unit tint.
@@ -232,7 +247,7 @@ struct PathShader::Impl {
     if (is_wanted(places.ambient, node)) put(places.ambient, node, weights[i] * own.ambient);
     if (is_wanted(places.unlit, node)) put(places.unlit, node, weights[i] * own.unlit);
     const std::uint32_t place = emission_of[scene.scene().object(node.object).material.index()];
-    if (place == kNoNode || !is_wanted(places.of_light[place], node)) return;
+    if (place == kNoNode || !is_light_wanted(place, node)) return;
     const Light& light = scene.scene().light(scene.light_order()[place]);
     const RayLight& source = scene.light(place);
     if (!may_meet(node, source, light)) return;
@@ -241,7 +256,7 @@ struct PathShader::Impl {
     if (path.density > 0)
       weight = met_weight(node, source, source.emission->density(node.object, node.hit.primitive, node.ray.origin,
                                                                  node.ray.direction, node.length));
-    put(places.of_light[place], node, weights[i] * own.emission * shown(light.emission, node) * weight);
+    put_light(place, node, weights[i] * own.emission * shown(light.emission, node) * weight);
   }
 
   /// The image of an emitting surface: as sharp as its light's samples see it, but to the eye.
@@ -264,8 +279,7 @@ struct PathShader::Impl {
       std::uint32_t program = kNoNode;
       for (std::uint32_t place = 0; place < places.of_light.size(); ++place) {
         const ShadowState state = block->lights[node.first_light + place].state;
-        if ((state != ShadowState::open && state != ShadowState::filtered) || !is_wanted(places.of_light[place], node))
-          continue;
+        if ((state != ShadowState::open && state != ShadowState::filtered) || !is_light_wanted(place, node)) continue;
         const auto term = light_term(scene, *block, i, place);
         if (!term) continue;
         all.push_back(i);
@@ -278,8 +292,8 @@ struct PathShader::Impl {
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
         const LightTerm& term = terms[chosen[lane]];
         const RayNode& node = block->nodes[term.node];
-        put(places.of_light[term.light], node,
-            weights[term.node] * tinted(from_lanes(kernel, 0, lane), block->lights[node.first_light + term.light]));
+        const Color light = tinted(from_lanes(kernel, 0, lane), block->lights[node.first_light + term.light]);
+        put_light(term.light, node, weights[term.node] * (light * surface_scale(node)));
       }
     });
   }

@@ -18,10 +18,11 @@ class PathShader {
  public:
   PathShader(const ColorScene& scene, PathPrograms& programs, const SumPlaces& places);
   ~PathShader();
-  /// Which terms are asked for: of `whole` samples all, of others those of `sums`.
+  /// Which terms are asked for: of `whole` samples all, of others those of `lights` and of the rest of `sums`.
   struct Wanted {
-    std::span<const std::uint8_t> sums;   // by sum; empty: all
-    std::span<const std::uint8_t> whole;  // by sample of the tile; empty: none
+    std::span<const std::uint8_t> sums;    // by sum, of those that are no light's; empty: all of everything
+    std::span<const std::uint8_t> lights;  // by place in the light order
+    std::span<const std::uint8_t> whole;   // by sample of the tile; empty: none
   };
   /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel.
   void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums, const Wanted& wanted = {});

@@ -3,9 +3,21 @@
 #include <algorithm>
 
 namespace relook {
+namespace {
+
+/// The colour with which a light's terms go into a sum that it shares.
+Color color_of_terms(const Light& light) {
+  const std::array<double, 3> color = color_of_light(light);
+  return {static_cast<float>(color[0]), static_cast<float>(color[1]), static_cast<float>(color[2])};
+}
+
+}  // namespace
 
 SumPlaces::SumPlaces(const Scene& scene, std::span<const LightSum> sums)
-    : of_light(scene.light_order.size()), count(sums.size()) {
+    : of_light(scene.light_order.size()),
+      shares(scene.light_order.size(), 0),
+      colors(scene.light_order.size(), Color(1, 1, 1)),
+      count(sums.size()) {
   for (std::uint32_t place = 0; place < sums.size(); ++place) {
     switch (sums[place].kind) {
       case LightSum::Kind::light: {
@@ -13,6 +25,9 @@ SumPlaces::SumPlaces(const Scene& scene, std::span<const LightSum> sums)
         of_light[static_cast<std::size_t>(light - scene.light_order.begin())] = place;
         break;
       }
+      case LightSum::Kind::shared:
+        place_members(scene, sums[place].shared, place);
+        break;
       case LightSum::Kind::sky:
         sky = place;
         break;
@@ -26,6 +41,16 @@ SumPlaces::SumPlaces(const Scene& scene, std::span<const LightSum> sums)
         unlit = place;
         break;
     }
+  }
+}
+
+void SumPlaces::place_members(const Scene& scene, const std::string& name, std::uint32_t sum) {
+  for (std::size_t place = 0; place < scene.light_order.size(); ++place) {
+    const Light& light = scene.light(scene.light_order[place]);
+    if (light.sum != name) continue;
+    of_light[place] = sum;
+    shares[place] = 1;
+    colors[place] = color_of_terms(light);
   }
 }
 

@@ -26,19 +26,4 @@ Fixed fixed_bits::fixed_of_any(float term, std::uint64_t& clamped) {
   return with_sign(whole + (rest > half || (rest == half && (whole & 1U) != 0) ? 1U : 0U), is_negative);
 }
 
-double value_of(Fixed sum) {
-  if (sum.bits == 0) return 0;
-  const bool is_negative = sum.steps() < 0;
-  const Uint128 magnitude = is_negative ? -sum.bits : sum.bits;
-  const int bits = fixed_bits::bit_width(magnitude);
-  // The highest 62 bits, and one that says whether there are others below: as far as the nearest double can depend on.
-  const Uint128 normal = magnitude << (128 - bits);
-  constexpr int kBelow = 66;
-  const bool has_more = (normal << (128 - kBelow)) != 0;
-  const auto top = static_cast<std::int64_t>(normal >> kBelow) | (has_more ? 1 : 0);
-  const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + kFixedStep + bits - (128 - kBelow)) << 52);
-  const double value = static_cast<double>(top) * scale;
-  return is_negative ? -value : value;
-}
-
 }  // namespace relook

@@ -2,6 +2,7 @@
 // away again. Two's complement in 128 bits, a step is 2^-80. Terms are at most 2^30, so a sum of fewer than 2^17 of
 // them holds; beyond that it wraps, and still comes back.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -73,6 +74,16 @@ inline constexpr std::array<std::int64_t, 512> kFactors = [] {
 }
 
 /// The nearest double, ties to even.
-[[nodiscard]] double value_of(Fixed sum);
+[[nodiscard]] inline double nearest_double(Int128 number) {
+  const Uint128 magnitude = number < 0 ? -static_cast<Uint128>(number) : static_cast<Uint128>(number);
+  // The highest 62 bits, and one that says whether there are others below: as far as the nearest double can depend on.
+  const int below = std::max(fixed_bits::bit_width(magnitude) - 62, 0);
+  const Uint128 top = magnitude >> below;
+  const auto kept = static_cast<std::int64_t>(top) | (top << below == magnitude ? 0 : 1);
+  const auto scale = std::bit_cast<double>(static_cast<std::uint64_t>(1023 + below) << 52);
+  return static_cast<double>(number < 0 ? -kept : kept) * scale;
+}
+[[nodiscard]] inline double value_of(Fixed sum) { return nearest_double(sum.steps()) * 0x1p-80; }
+static_assert(kFixedStep == -80);
 
 }  // namespace relook

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/tiles.h"
+#include "base/vector_clones.h"
 
 namespace relook {
 namespace {
@@ -20,6 +21,11 @@ constexpr std::size_t kShapeBytes = 2 + sizeof(std::uint64_t);  // of to_bytes()
 int trailing_zeros(Uint128 bits) {
   const auto low = static_cast<std::uint64_t>(bits);
   return low != 0 ? std::countr_zero(low) : 64 + std::countr_zero(static_cast<std::uint64_t>(bits >> 64));
+}
+
+/// What the lowest bit of packed values stands for.
+double unit_of(SumShape shape) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + kFixedStep + 8 * shape.dropped) << 52);
 }
 
 /// What all values of a sum have in common.
@@ -39,6 +45,31 @@ struct SumBits {
     return {static_cast<std::uint8_t>(dropped), static_cast<std::uint8_t>(bytes - dropped), clamped};
   }
 };
+
+/// Values of 8 bytes at most, `step` bytes apart.
+RELOOK_VECTOR_CLONES
+void read_narrow(const std::byte* place, std::size_t step, SumShape shape, std::span<double> values) {
+  const int above = 64 - 8 * shape.width;
+  const double unit = unit_of(shape);
+  for (double& value : values) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, place, sizeof bits);
+    value = static_cast<double>(static_cast<std::int64_t>(bits << above) >> above) * unit;
+    place += step;
+  }
+}
+
+RELOOK_VECTOR_CLONES
+void read_wide(const std::byte* place, std::size_t step, SumShape shape, std::span<double> values) {
+  const int above = 128 - 8 * shape.width;
+  const double unit = unit_of(shape);
+  for (double& value : values) {
+    Uint128 bits = 0;
+    std::memcpy(&bits, place, sizeof bits);
+    value = nearest_double(static_cast<Int128>(bits << above) >> above) * unit;
+    place += step;
+  }
+}
 
 }  // namespace
 
@@ -135,6 +166,26 @@ PackedSums PackedSums::remapped(std::span<const std::uint32_t> old_of_new) const
   }
   return next;
 }
+
+void PackedSums::read_values(std::size_t row, std::size_t first, std::size_t step, std::span<double> values) const {
+  require(values.size() == pixels_, "a place a pixel");
+  const SumShape shape = shapes_[row];
+  if (shape.width == 0) {
+    std::ranges::fill(values, 0.0);
+    return;
+  }
+  const std::byte* const place = values_.data() + starts_[row] + first * shape.width;
+  if (shape.width <= sizeof(std::uint64_t))
+    read_narrow(place, step * shape.width, shape, values);
+  else
+    read_wide(place, step * shape.width, shape, values);
+}
+
+void PackedSums::channel_values(std::size_t sum, std::size_t channel, std::span<double> values) const {
+  read_values(sum, channel, kChannels, values);
+}
+
+void PackedSums::coverage_values(std::span<double> values) const { read_values(sums(), 0, 1, values); }
 
 std::uint64_t PackedSums::clamped() const {
   std::uint64_t clamped = 0;

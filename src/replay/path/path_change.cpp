@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "color/path/sum_places.h"
 #include "frame/light_sums.h"
 
 namespace relook {
@@ -45,21 +46,41 @@ bool shines_otherwise(const Light& before, const Light& after) {
          before.emission != after.emission;
 }
 
-bool same_sum(const LightSum& a, const LightSum& b) { return a.kind == b.kind && a.light == b.light; }
+/// The same if the light stays where it is: are its terms in its sum otherwise?
+bool has_other_terms(const Light& before, const Light& after) {
+  return before.sum != after.sum || shines_otherwise(before, after) ||
+         (!after.sum.empty() && color_of_light(before) != color_of_light(after));
+}
 
-void find_afresh(const Scene& scene, const SceneDelta& delta, PathChange& change) {
-  const auto sum_of_light = [&](LightId light) {
-    return std::ranges::find_if(change.sums, [&](const LightSum& sum) {
-             return sum.kind == LightSum::Kind::light && sum.light == light;
-           }) - change.sums.begin();
-  };
-  const auto mark = [&](std::ptrdiff_t sum) {
-    if (sum < std::ssize(change.sums)) change.afresh[static_cast<std::size_t>(sum)] = 1;
-  };
-  for (std::size_t place = 0; place < scene.light_order.size(); ++place)
-    if (change.step.rays.old_light_index[place] == kNoNode) mark(sum_of_light(scene.light_order[place]));
+bool same_sum(const LightSum& a, const LightSum& b) {
+  return a.kind == b.kind && a.light == b.light && a.shared == b.shared;
+}
+
+bool any_of(const std::vector<std::uint8_t>& flags) { return std::ranges::find(flags, std::uint8_t{1}) != flags.end(); }
+
+/// By LightId, of lights that have other terms, are new or gone.
+std::vector<std::uint8_t> changed_lights(const Scene& scene, const SceneDelta& delta, const PathChange& change) {
+  std::vector<std::uint8_t> changed(scene.lights.size(), 0);
   for (const auto& light : delta.lights)
-    if (shines_otherwise(light.before, scene.light(light.id))) mark(sum_of_light(light.id));
+    if (has_other_terms(light.before, scene.light(light.id))) changed[light.id.index()] = 1;
+  for (std::size_t place = 0; place < scene.light_order.size(); ++place)
+    if (change.step.rays.old_light_index[place] == kNoNode) changed[scene.light_order[place].index()] = 1;
+  for (const LightId light : change.step.rays.old_lights)
+    if (!scene.light(light).alive) changed[light.index()] = 1;
+  return changed;
+}
+
+void find_taken(const Scene& scene, const SceneDelta& delta, const std::vector<std::uint8_t>& changed,
+                PathChange& change) {
+  std::vector<std::uint8_t> shared(scene.lights.size(), 0);  // by LightId: before the edit
+  for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = scene.lights[i].sum.empty() ? 0 : 1;
+  for (const auto& light : delta.lights) shared[light.id.index()] = light.before.sum.empty() ? 0 : 1;
+  for (const LightId light : change.step.rays.old_lights)
+    change.taken.push_back(changed[light.index()] & shared[light.index()]);
+}
+
+/// Of the environment's sums.
+void find_afresh(const Scene& scene, const SceneDelta& delta, PathChange& change) {
   if (!delta.environment_before) return;
   const Environment &before = *delta.environment_before, &after = scene.environment;
   const bool is_turned = before.image != after.image || before.rotation != after.rotation;
@@ -76,14 +97,24 @@ void find_afresh(const Scene& scene, const SceneDelta& delta, PathChange& change
   }
 }
 
-}  // namespace
-
-bool PathChange::any_afresh() const {
-  return std::ranges::find(afresh, std::uint8_t{1}) != afresh.end();
+void find_given(const Scene& scene, const std::vector<std::uint8_t>& changed, PathChange& change) {
+  const SumPlaces places(scene, change.sums);
+  for (std::size_t place = 0; place < places.of_light.size(); ++place) {
+    const bool is_changed = changed[scene.light_order[place].index()] != 0;
+    std::uint8_t& afresh = change.afresh[places.of_light[place]];
+    if (is_changed && places.shares[place] == 0) afresh = 1;
+    change.given.push_back(is_changed || afresh != 0 ? 1 : 0);
+  }
 }
 
+}  // namespace
+
+bool PathChange::any_afresh() const { return any_of(afresh); }
+bool PathChange::any_taken() const { return any_of(taken); }
+bool PathChange::any_given() const { return any_of(given); }
+
 bool PathChange::touches_samples() const {
-  return step.touches_rays() || any_afresh() || !shaded.empty() || !step.colors.reassigned.empty();
+  return step.touches_rays() || any_afresh() || any_taken() || any_given() || !shaded.empty() || !step.colors.reassigned.empty();
 }
 
 PathChange find_path_change(const RayScene& rays_before, const std::vector<LightId>& lights_before,
@@ -102,6 +133,9 @@ PathChange find_path_change(const RayScene& rays_before, const std::vector<Light
   change.recolored = change.recolored || sums_before.size() != change.sums.size();
   change.afresh.assign(change.sums.size(), 0);
   find_afresh(scene, delta, change);
+  const std::vector<std::uint8_t> changed = changed_lights(scene, delta, change);
+  find_taken(scene, delta, changed, change);
+  find_given(scene, changed, change);
   for (const auto& [material, fields] : change.step.colors.parameters.materials)
     if ((fields & ~kEmissionMask) != 0) change.shaded.push_back(material);
   if (change.touches_samples()) change.scene_before = before_edit(scene, delta, lights_before);

@@ -1,5 +1,6 @@
 // What one edit means to the sums of light of a frame of the path integrator: which stay, which are worked out afresh,
-// and which samples' terms change in all of them. The scene delta in; what path_tile.h carries out, out.
+// which lights' terms are taken out of sums that they share and put in, and which samples' terms change in all of them.
+// The scene delta in; what path_tile.h carries out, out.
 #pragma once
 #include <memory>
 #include <vector>
@@ -16,13 +17,18 @@ struct PathChange {
   StepChange step;
   std::vector<LightSum> sums;              // after the edit
   std::vector<std::uint32_t> old_of_new;   // by sum: its place before; kNewSum
-  std::vector<std::uint8_t> afresh;        // by sum: all its terms may be others; they follow from the trees
+  std::vector<std::uint8_t> afresh;        // by sum, none that is shared: all its terms may be others; they follow from
+                                           // the trees
+  std::vector<std::uint8_t> taken;         // by place in the light order before: its terms leave a shared sum
+  std::vector<std::uint8_t> given;         // by place in that after: its terms are added, to a sum afresh or a shared one
   bool recolored = false;                  // a sum's colour is another one, or sums have come or gone
   std::vector<MaterialId> shaded;          // materials whose users' terms change
   std::shared_ptr<const Scene> scene_before;  // where samples are touched; else null
   RayScene rays_before;
 
   [[nodiscard]] bool any_afresh() const;
+  [[nodiscard]] bool any_taken() const;
+  [[nodiscard]] bool any_given() const;
   /// Must trees be looked at at all?
   [[nodiscard]] bool touches_samples() const;
 };

@@ -6,9 +6,23 @@
 #include "edit/apply.h"
 #include "image/image_pieces.h"
 #include "replay/path/path_tile.h"
+#include "trace/tree/path_cursor.h"
 
 namespace relook {
 namespace {
+
+/// Does light of one of these places of the light order come to a hit?
+bool sees_any(std::span<const std::uint32_t> words, const PathLayout& layout, std::span<const std::uint32_t> places) {
+  for (PathCursor cursor(words, layout); !cursor.at_end();) {
+    const PathNode node = cursor.next();
+    if (node.is_miss()) continue;
+    for (const std::uint32_t place : places) {
+      const ShadowState state = shadow_state(node.lights, place);
+      if (state == ShadowState::open || state == ShadowState::filtered) return true;
+    }
+  }
+  return false;
+}
 
 /// Which paths an edit may reach.
 class PathSelection {
@@ -25,6 +39,7 @@ class PathSelection {
     for (std::uint32_t object = 0; object < flags.size(); ++object)
       if (flags[object] != 0) flag(ObjectId(object), pass.update_path);
     for (const ObjectId object : change_.step.colors.reassigned) flag(object, pass.shade_path);
+    select_relit(pass);
     if (change_.shaded.empty()) return;
     for (std::uint32_t object = 0; object < scene_.objects.size(); ++object)
       if (std::ranges::find(change_.shaded, scene_.objects[object].material) != change_.shaded.end())
@@ -34,6 +49,22 @@ class PathSelection {
  private:
   void flag(ObjectId object, std::vector<std::uint8_t>& paths) const {
     for (const PathId path : stored_.index().paths_of(object)) paths[path.index()] = 1;
+  }
+
+  /// Of lamps without size that stay where they are and change in a sum that they share.
+  void select_relit(PathPass& pass) const {
+    if (change_.step.rays.lights_changed || change_.any_afresh() || !change_.any_given()) return;
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t place = 0; place < change_.given.size(); ++place) {
+      if (change_.given[place] == 0) continue;
+      if (pass.grow_after.scene.light(place).is_soft()) return;  // rays may meet it anywhere
+      places.push_back(place);
+    }
+    const PathTable& paths = stored_.image().paths;
+    const PathLayout layout{change_.given.size(), 0};
+    pass.relight_path.assign(paths.size(), 0);
+    for (std::uint32_t path = 0; path < paths.size(); ++path)
+      pass.relight_path[path] = sees_any(paths.words(PathId(path)), layout, places) ? 1 : 0;
   }
 
   const StoredImage& stored_;
@@ -71,7 +102,9 @@ class PathUpdate {
     }
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
-    PathPass pass{change_, stored_.image(), programs_before, programs_after, grow_before, grow_after, {}, {}};
+    Pool<PathShader> shaders_before, shaders_after;
+    PathPass pass{change_,        stored_.image(), programs_before, programs_after, grow_before, grow_after,
+                  shaders_before, shaders_after,   {},              {},             {}};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });

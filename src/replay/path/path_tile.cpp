@@ -1,5 +1,7 @@
 #include "replay/path/path_tile.h"
 
+#include <memory>
+
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "trace/tree/pack.h"
@@ -13,6 +15,11 @@ struct Batch {
   std::vector<std::uint32_t> roots;
 };
 
+Pool<PathShader>::Loan shader_of(const TilePrograms& programs, Pool<PathShader>& shaders) {
+  return shaders.take(
+      [&] { return std::make_unique<PathShader>(programs.scene(), programs.path(), programs.places()); });
+}
+
 class PathTileUpdater {
  public:
   PathTileUpdater(const PathPass& pass, std::size_t tile)
@@ -21,11 +28,13 @@ class PathTileUpdater {
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         samples_(pass.image.view.samples),
         primaries_(pass.grow_after.scene.camera(), pass.image.view),
-        shader_before_(pass.before.scene(), pass.before.path(), pass.before.places()),
-        shader_after_(pass.after.scene(), pass.after.path(), pass.after.places()),
+        shader_before_(shader_of(pass.before, pass.shaders_before)),
+        shader_after_(shader_of(pass.after, pass.shaders_after)),
         old_terms_(pass.before.places().count, rect_.pixels()),
         new_terms_(pass.after.places().count, rect_.pixels()),
-        any_afresh_(pass.change.any_afresh()) {
+        no_sums_(pass.before.places().count, 0),
+        adds_(pass.change.any_afresh() || pass.change.any_given()),
+        takes_(pass.change.any_taken()) {
     result_.fresh.tile = tile;
   }
 
@@ -34,7 +43,7 @@ class PathTileUpdater {
     flush();
     const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
                               !std::ranges::is_sorted(pass_.change.old_of_new);
-    if (result_.samples == 0 && !any_afresh_ && !is_reordered) {
+    if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
       result_.sums = sums;
       return std::move(result_);
     }
@@ -61,7 +70,7 @@ class PathTileUpdater {
       for (std::uint32_t k = 0; k < changed_.roots.size(); ++k) pack_sample(changed_, changed_.roots[k], first + k);
       result_.samples += last - first;
       chunk.learn(changed_.block, last - first);
-      shade(changed_, shader_after_, TermSign::add, new_terms_, {});
+      shade(changed_, *shader_after_, TermSign::add, new_terms_, {});
     }
     result_.sums = PackedSums::pack(new_terms_);
     result_.has_changed = true;
@@ -72,7 +81,8 @@ class PathTileUpdater {
   void update_sample(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
     const bool updates = pass_.update_path[path.index()] != 0, shades = pass_.shade_path[path.index()] != 0;
-    if (!updates && !shades && !any_afresh_) return;
+    const bool relights = (adds_ || takes_) && (pass_.relight_path.empty() || pass_.relight_path[path.index()] != 0);
+    if (!updates && !shades && !relights) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     const std::span<const std::uint32_t> words = pass_.image.paths.words(path);
     const StoredTree stored{PathCursor(words, {pass_.change.step.rays.old_lights.size(), 0}), trees_.hits_of(sample)};
@@ -86,16 +96,18 @@ class PathTileUpdater {
       root = expand_tree(pass_.grow_after, primary, sample, stored, changed_.block, result_.counters);
     if (what != TreeChange::none || pass_.change.step.rays.lights_changed) pack_sample(changed_, root, sample);
     const bool is_whole = shades || what == TreeChange::all;
-    if (!is_whole && !any_afresh_) {
+    const bool adds = is_whole || (relights && adds_), takes = is_whole || (relights && takes_);
+    if (adds)
+      changed_.roots.push_back(root);
+    else
       changed_.block.rewind(mark);
-      return;
-    }
+    if (!adds && !takes) return;
     ++result_.samples;
     whole_[sample] = is_whole ? 1 : 0;
-    changed_.roots.push_back(root);
-    if (is_whole)
+    if (takes)
       old_.roots.push_back(expand_tree(pass_.grow_before, primary, sample, stored, old_.block, result_.counters));
-    if (ChunkSize::is_full(changed_.block, changed_.roots.size())) flush();
+    if (ChunkSize::is_full(changed_.block, changed_.roots.size()) || ChunkSize::is_full(old_.block, old_.roots.size()))
+      flush();
   }
 
   void pack_sample(const Batch& batch, std::uint32_t root, std::uint32_t sample) {
@@ -116,8 +128,8 @@ class PathTileUpdater {
   }
   void flush() {
     stop_if_interrupted();
-    shade(old_, shader_before_, TermSign::subtract, old_terms_, {});
-    shade(changed_, shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, whole_});
+    shade(old_, *shader_before_, TermSign::subtract, old_terms_, {no_sums_, pass_.change.taken, whole_});
+    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_});
   }
 
   const PathPass& pass_;
@@ -125,10 +137,11 @@ class PathTileUpdater {
   TileRect rect_;
   std::uint32_t samples_;
   PrimaryRays primaries_;
-  PathShader shader_before_, shader_after_;
+  Pool<PathShader>::Loan shader_before_, shader_after_;
   TileSums old_terms_, new_terms_;
-  bool any_afresh_;
-  Batch old_;      // trees as they were, of samples whose terms change
+  std::vector<std::uint8_t> no_sums_;
+  bool adds_, takes_;  // terms of some lights, beside those of samples whose terms all change
+  Batch old_;      // trees as they were, of samples whose terms change, or of which some lights' are taken out
   Batch changed_;  // the same as they are now, and those of which only some lights are worked out afresh
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
   std::vector<std::uint32_t> words_;

@@ -2,6 +2,7 @@
 // taken out of its sums, new ones added: base minus old plus new is the full render's, bit for bit. Tiles can be done at
 // the same time.
 #pragma once
+#include "base/pool.h"
 #include "image/tile_light.h"
 #include "replay/path/path_change.h"
 #include "replay/replay_parts.h"
@@ -17,8 +18,11 @@ struct PathPass {
   const TilePrograms& after;             // and after it
   const GrowScene& grow_before;
   const GrowScene& grow_after;
+  Pool<PathShader>& shaders_before;  // of the programs above
+  Pool<PathShader>& shaders_after;
   std::vector<std::uint8_t> update_path;  // by path: its trees may change, or must be packed anew
   std::vector<std::uint8_t> shade_path;   // by path: its terms change though its tree does not
+  std::vector<std::uint8_t> relight_path;  // by path: lights that are taken or given may reach it; empty: they may all
 };
 
 struct PathTileResult {

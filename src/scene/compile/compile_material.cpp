@@ -126,12 +126,13 @@ double number_or(const Json& value, std::initializer_list<std::string_view> keys
 }
 
 /// What of a light only Integrator::path reads.
-void set_size(const Json& value, Light& light) {
+void set_path_members(const Json& value, Light& light) {
   const LightTraits& traits = traits_of(light.kind);
   const auto at_least = [](double x, float smallest) { return x > 0 ? std::max(static_cast<float>(x), smallest) : 0; };
   if (traits.has_radius) light.radius = at_least(number_or(value, {"extras", "relook", "radius"}, 0), kSmallestLight);
   if (traits.has_angle) light.angle = at_least(number_or(value, {"extras", "relook", "angle"}, 0), kSmallestAngle);
   light.rate = std::max(static_cast<float>(number_or(value, {"extras", "relook", "rate"}, 1)), kSmallestRate);
+  if (const Json* sum = member_at(value, {"extras", "relook", "sum"})) light.sum = sum->get<std::string>();
   if (!traits.has_size) return;
   const double height = number_or(value, {"size"}, 1);
   const double aspect = light.kind == LightKind::rect ? number_or(value, {"rect", "aspect"}, 1) : 1;
@@ -254,7 +255,7 @@ Light compile_light(std::string_view file, const std::string& name, const Json& 
   light.intensity = float_of(value["intensity"]);
   if (const double kelvin = number_or(value, {"extras", "relook", "temperature"}, 0); kelvin > 0)
     light.color *= temperature_color(kelvin);
-  if (integrator == Integrator::path) set_size(value, light);
+  if (integrator == Integrator::path) set_path_members(value, light);
   if (value.contains("range") && traits_of(light.kind).has_place) light.range = float_of(value["range"]);
   if (!traits_of(light.kind).has_cone) return light;
   light.inner_cone = float_of(value["spot"]["innerConeAngle"]);

@@ -5,6 +5,7 @@
 
 #include "scene/gltf/check/gltf_use.h"
 #include "scene/look/counted_assets.h"
+#include "scene/look/light_shares.h"
 #include "scene/look/look_check.h"
 #include "scene/look/look_names.h"
 #include "scene/look/look_schema.h"
@@ -250,6 +251,7 @@ LookDocument make_look_document(ImportedGltf imported) {
   document.look["scene"] = active_scene(gltf);
   fill_from_schema(scene_schema(), document.look["scene"]);
   check_values(document);
+  write_light_shares(document, document.order[static_cast<std::size_t>(Section::lights)]);
   return document;
 }
 

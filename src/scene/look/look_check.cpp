@@ -48,13 +48,13 @@ const Schema& schema_of_entity(const std::string& section) {
   return schema_of(*section_of(section));
 }
 
-void set_relook_extra(Json& value, const char* key, const std::string& text) {
+void set_relook_extra(Json& value, const char* key, const Json& extra) {
   Json& extras = value["extras"];
   if (extras.is_null()) extras = Json::object();
   if (!extras.is_object()) return;
   Json& relook = extras["relook"];
   if (relook.is_null()) relook = Json::object();
-  if (relook.is_object()) relook[key] = text;
+  if (relook.is_object()) relook[key] = extra;
 }
 
 std::string entity_pointer(const TouchedEntity& entity) {

@@ -30,7 +30,7 @@ void check_entity(const LookDocument& document, const TouchedEntity& entity, con
 void check_values(const LookDocument& document);
 
 /// Sets extras.relook.<key> of an entity; not where something else stands in its place, which the checks refuse.
-void set_relook_extra(Json& value, const char* key, const std::string& text);
+void set_relook_extra(Json& value, const char* key, const Json& extra);
 /// The schema of the entities of a section, of "scene" or of "extensions".
 [[nodiscard]] const Schema& schema_of_entity(const std::string& section);
 /// The JSON pointer to an entity: "/materials/Gold", "/scene".

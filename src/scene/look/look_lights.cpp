@@ -1,7 +1,8 @@
 // --lights auto: a key, a fill and a rim light, as directional lights placed relative to the camera, so that they do
 // not depend on the size of the scene. A white diffuse surface that faces the key alone has a value of 0.8. Where none
 // of them reaches the camera, in a closed room, a lamp at the camera gives as much to what it looks at. Under
-// Integrator::path a grey environment joins them.
+// Integrator::path they are discs in the sky, so that polished surfaces show them and shadows are soft, and a grey
+// environment joins them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <span>
 
 #include "scene/compile/compile_material.h"
+#include "scene/look/light_shares.h"
 #include "scene/look/look.h"
 #include "scene/look/look_bounds.h"
 #include "scene/look/look_names.h"
@@ -21,6 +23,7 @@ struct AutoLight {
   const char* name;
   double right, up, back;  // where the light comes from, in the camera's frame
   double white_diffuse;    // value of a white diffuse surface that faces it
+  double angle;            // radians across under Integrator::path, which leaves white_diffuse as it is
   Json color;
 };
 
@@ -100,8 +103,8 @@ std::vector<Obstacle> obstacles(const LookDocument& document, const WidePoint& e
 }
 
 /// Adds a light and its node to the look document, both called `wanted` or, if that is taken, `wanted_2` and so on.
-/// `node`: its transform.
-void add_light(LookDocument& document, const char* wanted, Json light, Json node) {
+/// `node`: its transform. Returns the name.
+std::string add_light(LookDocument& document, const char* wanted, Json light, Json node) {
   const std::string name = unique_name(wanted, [&](const std::string& candidate) {
     return document.look["lights"].contains(candidate) || document.look["nodes"].contains(candidate);
   });
@@ -110,6 +113,7 @@ void add_light(LookDocument& document, const char* wanted, Json light, Json node
   node["extensions"]["KHR_lights_punctual"]["light"] = name;
   fill_defaults(Section::nodes, node);
   document.look["nodes"][name] = std::move(node);
+  return name;
 }
 
 constexpr double kKeyDiffuse = 0.8;
@@ -131,9 +135,9 @@ void add_environment(LookDocument& document) {
 
 std::string add_auto_lights(LookDocument& document, const Camera& camera, Integrator integrator) {
   if (integrator == Integrator::path) add_environment(document);
-  const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, {1.0, 0.97, 0.92}},
-                              {"fill", 0.9, 0.3, 0.6, 0.22, {0.92, 0.96, 1.0}},
-                              {"rim", 0.3, 0.7, -0.9, 0.4, {1.0, 1.0, 1.0}}};
+  const AutoLight lights[] = {{"key", -0.6, 0.8, 0.7, kKeyDiffuse, 0.25, {1.0, 0.97, 0.92}},
+                              {"fill", 0.9, 0.3, 0.6, 0.22, 0.6, {0.92, 0.96, 1.0}},
+                              {"rim", 0.3, 0.7, -0.9, 0.4, 0.3, {1.0, 1.0, 1.0}}};
   std::vector<Way> ways;
   for (const AutoLight& light : lights)
     ways.push_back({(Imath::V3d(camera.right) * light.right + Imath::V3d(camera.up) * light.up -
@@ -144,19 +148,26 @@ std::string add_auto_lights(LookDocument& document, const Camera& camera, Integr
   const WideBox bounds = world_bounds(document);
   const bool is_inside = bounds.intersects(camera.eye);
   const std::vector<Obstacle> met = is_inside ? obstacles(document, camera.eye, ways) : std::vector<Obstacle>();
-  for (std::size_t i = 0; i < std::size(lights); ++i)  // a diffuse surface reflects 1 / pi of the illuminance
-    add_light(document, lights[i].name,
-              {{"type", "directional"},
-               {"color", lights[i].color},
-               {"intensity", lights[i].white_diffuse * std::numbers::pi}},
-              {{"rotation", rotation_to(-ways[i].along)}});
+  std::vector<std::string> added;
+  for (std::size_t i = 0; i < std::size(lights); ++i) {
+    Json light{{"type", "directional"},
+               {"color", lights[i].color},  // a diffuse surface reflects 1 / pi of the illuminance
+               {"intensity", lights[i].white_diffuse * std::numbers::pi}};
+    if (integrator == Integrator::path) light["extras"]["relook"]["angle"] = lights[i].angle;
+    added.push_back(
+        add_light(document, lights[i].name, std::move(light), {{"rotation", rotation_to(-ways[i].along)}}));
+  }
   const bool is_closed = is_inside && std::ranges::all_of(std::span(met).first(std::size(lights)),
                                                           [](const Obstacle& o) { return std::isfinite(o.distance); });
+  if (is_closed) {
+    const double extent = bounds.size().length() / 2;
+    const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
+    added.push_back(add_light(
+        document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
+        {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}}));
+  }
+  write_light_shares(document, added);
   if (!is_closed) return "";
-  const double extent = bounds.size().length() / 2;
-  const double distance = std::clamp(std::min(met.back().distance, extent), 1e-4, 1e4);
-  add_light(document, "lamp", {{"type", "point"}, {"intensity", kKeyDiffuse * std::numbers::pi * distance * distance}},
-            {{"translation", {camera.eye.x, camera.eye.y, camera.eye.z}}});
   return "the camera stands in a room closed by node \"" + met.front().node +
          "\", which no light of --lights auto reaches: a lamp at the camera lights it";
 }

@@ -235,7 +235,7 @@ constexpr std::size_t kPunctualKinds = static_cast<std::size_t>(LightKind::rect)
 const Schema& light_schema() {
   static const Schema relook{{unwritten(number("radius", {}, 0, kMost)), unwritten(number("angle", {}, 0, kPi)),
                               unwritten(or_zero(number("temperature", {}, kCoolest, kHottest))),
-                              unwritten(number("rate", {}, kAboveZero, 1))}};
+                              unwritten(number("rate", {}, kAboveZero, 1)), unwritten(text("sum"))}};
   static const Schema extras = wrapped("relook", relook, false);
   static const Schema light =
       joined({light_fields(kDocumentWords), punctual_fields(), area_fields(), {optional("extras", extras)}});

@@ -23,9 +23,10 @@ struct ShadowSegment {
   }
 };
 [[nodiscard]] ShadowSegment shadow_segment(const RayNode& node, const RayLight& light);
-/// False where no light is gathered and no segments are kept: the inner side of a volume, and where rays only gather.
+/// False where no light is gathered and no segments are kept: the inner side of a volume, and where rays only gather or
+/// pass.
 [[nodiscard]] inline bool is_lit(const RayObject& object, const RayNode& node) {
-  return !(object.optics.volume && node.point.inside) && !node.ray.path.gathers;
+  return !(object.optics.volume && node.point.inside) && !node.ray.path.gathers && node.coverage.sees_surface();
 }
 
 /// Completes the `count` filters of one segment of `node`, in its order: points, footprints, lengths inside volumes.

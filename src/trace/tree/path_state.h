@@ -15,6 +15,7 @@ struct PathState {
   float density = 0;          // per steradian, times the share of the lobe that sent it; 0: of no lobe, or bent since
   float alpha_floor = 0;      // least alpha of reflecting lobes from here on
   std::uint8_t glossy = 0;    // reflections so far
+  std::uint8_t straight = 0;  // straight rays by coverage so far: of the eye, or since the first scattering
   bool is_first = true;       // it is the first lobe's, or none has scattered it yet
   bool is_eye = true;         // nothing has turned it
   bool gathers = false;       // where it ends, emission counts and nothing is scattered

@@ -205,6 +205,9 @@ void note_transmission(PathState& path, const PathState& from, bool is_sampled, 
   path.has_lamps = from.has_lamps || is_sampled;
 }
 
+/// What is counted of straight rays by coverage behind a vertex that scatters: the eye's do not count there.
+std::uint8_t straight_behind(const PathState& from) { return from.from.is_none() ? std::uint8_t{0} : from.straight; }
+
 /// The ray of a lobe that has been chosen, from a hit that scatters.
 void add_lobe_ray(Spawner& spawner, const RayNode& node, const RayObject& object, const VertexLobes& lobes,
                   const SpawnRule& rule, float fresnel) {
@@ -219,6 +222,7 @@ void add_lobe_ray(Spawner& spawner, const RayNode& node, const RayObject& object
   SpawnedRay* ray = spawner.add(branch_of(lobe, lobes), sample->way, is_through ? -1.0F : 1.0F, counted);
   if (ray == nullptr) return;
   PathState& path = ray->path;
+  path.straight = straight_behind(from);
   path.from = node.object;
   path.density = sample->density;
   path.is_first = from.from.is_none();
@@ -246,6 +250,7 @@ void add_mirror_ray(Spawner& spawner, const RayNode& node, const Normal& normal)
   SpawnedRay* ray =
       spawner.add(Branch::reflection, mirrored(node.ray.direction, normal, node.point.geometric), 1.0F, 1.0F);
   if (ray == nullptr) return;
+  ray->path.straight = straight_behind(node.ray.path);
   ray->path.from = node.object;
   ray->path.density = 0;
   ray->path.is_eye = ray->path.is_shut = ray->path.is_wide = ray->path.has_lamps = false;
@@ -261,6 +266,19 @@ void note_refraction(SpawnedRay* ray) {
   if (!ray->goes_on()) path.is_eye = false;
 }
 
+/// The straight ray of what is transparent. By coverage alone it is no new generation, and has a limit of its own.
+SpawnedRay* add_straight_ray(Spawner& spawner, const RayNode& node, const RayObject& object, bool is_deep) {
+  constexpr std::uint8_t kMostStraight = 16;
+  const bool by_coverage = passes_by_coverage(*object.material);
+  spawner.set_may_spawn(by_coverage ? node.ray.path.straight < kMostStraight : !is_deep);
+  SpawnedRay* ray = spawner.add_straight(Branch::transparency, 1.0F);
+  spawner.set_may_spawn(!is_deep);
+  if (ray == nullptr || !by_coverage) return ray;
+  ray->generation = node.ray.generation;
+  ++ray->path.straight;
+  return ray;
+}
+
 /// One lobe is followed, and, beside it, what goes through the surface.
 void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
   const SurfaceOptics& optics = object.optics;
@@ -268,25 +286,29 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
   // What stands behind what lets rays through is gathered, too, as far as samples of lights see through it.
   constexpr std::uint32_t kMostBehind = 8;
   const bool is_scattered = node.ray.path.density > 0;
-  Spawner spawner(node, object, node.ray.generation < rule.max_depth + (gathers || is_scattered ? kMostBehind : 0), spawned);
+  const bool is_deep = node.ray.generation >= rule.max_depth + (gathers || is_scattered ? kMostBehind : 0);
+  Spawner spawner(node, object, !is_deep, spawned);
   const bool is_phong = object.material->model == IlluminationModel::blinn_phong;
   if (gathers && !optics.refracts && !optics.transparent) return;
-  const Interface interface(node, object);
-  if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
   const auto bent = [&](SpawnedRay* ray) {
     if (optics.bent || object.blurs) note_refraction(ray);
   };
+  const CoverageChoice coverage = coverage_choice(node, object);
+  if (optics.transparent && coverage.goes_on()) bent(add_straight_ray(spawner, node, object, is_deep));
+  if (!coverage.sees_surface()) return;
   const auto refracted = [&](SpawnedRay* ray) {
     bent(ray);
     if (ray == nullptr) return;
     ++ray->path.transmission;
     ray->path.gathers = gathers || ray->path.transmission > rule.transmission_depth;
   };
+  const Interface interface(node, object);
+  if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
   // Where what goes through is blurred, a lobe stands for it, but for rays that only gather.
-  const bool is_smooth = gathers || !object.blurs;
-  if (is_smooth) interface.refract(spawner, false, refracted);
-  if (optics.transparent) bent(spawner.add_straight(Branch::transparency, 1.0F));
-  if (is_smooth) interface.refract(spawner, true, refracted);
+  if (gathers || !object.blurs) {
+    interface.refract(spawner, false, refracted);
+    interface.refract(spawner, true, refracted);
+  }
   if (gathers) return;
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
   if (!lobes.any()) return;

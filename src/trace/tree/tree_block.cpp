@@ -2,9 +2,31 @@
 
 #include <cmath>
 
+#include "scene/surface_optics.h"
 #include "trace/tree/path_cursor.h"
 
 namespace relook {
+namespace {
+
+/// The order of the factors is that of colour expressions (SurfaceTerms::coverage).
+float coverage_at(const RayNode& node, const RayObject& object) {
+  float alpha = object.material->base_color.a;
+  const TextureSlot& texture = object.material->slot(Slot::base_color);
+  if (texture.kind != TextureKind::none)
+    alpha *= texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint).a;
+  if (!object.mesh->colors.empty()) alpha *= vertex_color(*object.mesh, node.hit).a;
+  return alpha;
+}
+
+}  // namespace
+
+CoverageChoice coverage_choice(const RayNode& node, const RayObject& object) {
+  const PathState& path = node.ray.path;
+  if (path.from.is_none() || !object.optics.transparent || !passes_by_coverage(*object.material)) return {};
+  const CoverageBucket bucket = bucket_of_coverage(coverage_at(node, object));
+  const bool passes = sample_number(path.key, path.history, Purpose::coverage) < passing_share(bucket);
+  return {passes ? CoverageChoice::Way::passes : CoverageChoice::Way::stops, bucket};
+}
 
 void complete(RayNode& node, const RayObject& object) {
   node.point = surface_point(object, node.hit, node.ray.direction);
@@ -13,6 +35,7 @@ void complete(RayNode& node, const RayObject& object) {
   const float width = node.ray.cone_width + node.ray.cone_spread * node.length;
   node.has_back = object.blurs && !object.optics.bent;
   node.footprint = width / std::fmax(-node.ray.direction.dot(node.point.geometric), 0.05F);
+  node.coverage = coverage_choice(node, object);
 }
 
 float distance_slack(const RayNode& node, const RayObject& object) {

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "scene/coverage_bucket.h"
 #include "trace/light/light_sample.h"
 #include "trace/surface.h"
 #include "trace/tree/lobes.h"
@@ -16,6 +17,24 @@
 namespace relook {
 
 inline constexpr std::uint32_t kNoNode = 0xFFFFFFFFU;
+
+/// What becomes of a ray where a surface covers a part of what it meets. From the eye both: the surface is seen, and a
+/// straight ray beside it sees what is behind. Behind a scattering the ray either stops, and the straight ray is not
+/// there, or passes, and the surface is not.
+struct CoverageChoice {
+  enum class Way : std::uint8_t { both, stops, passes };
+  Way way = Way::both;
+  CoverageBucket bucket = CoverageBucket::half;
+
+  [[nodiscard]] bool sees_surface() const { return way != Way::passes; }
+  [[nodiscard]] bool goes_on() const { return way != Way::stops; }
+  /// One over the share of the chosen way.
+  [[nodiscard]] float scale() const {
+    if (way == Way::both) return 1;
+    const float passing = passing_share(bucket);
+    return 1 / (way == Way::passes ? passing : 1 - passing);
+  }
+};
 
 /// A node of a ray tree: a hit, or the environment when the ray left the scene.
 struct RayNode {
@@ -32,6 +51,7 @@ struct RayNode {
   SpawnedRay ray;                                     // that led here
   BranchSet cut;                                      // branches that the Fresnel cut-off removed
   bool has_back = false;                              // light from behind reaches it, too: it is thin and blurs
+  CoverageChoice coverage;                            // of the path integrator
   float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
   float length = 0;                                   // metres from the ray's origin
   float footprint = 0;                                // metres: ray-cone width at the hit over the cosine of incidence
@@ -94,8 +114,12 @@ struct TreeBlock {
   void clear() { rewind({}); }
 };
 
-/// Fills length, footprint and point of a node whose ray, object and hit are set.
+/// Fills length, footprint, point and coverage of a node whose ray, object and hit are set.
 void complete(RayNode& node, const RayObject& object);
+
+/// The choice at a completed node, with this value of its object. It follows from a bucket of the coverage that colours
+/// are weighed by, at the ray's footprint.
+[[nodiscard]] CoverageChoice coverage_choice(const RayNode& node, const RayObject& object);
 
 /// A hit's distance is known up to rounding, the more so the flatter the ray meets its triangle: the half width of the
 /// band, in metres along the ray, within which only the whole scene decides what is nearer.
