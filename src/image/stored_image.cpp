@@ -46,6 +46,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
                          const RegionOptions& options, Residency& residency)
     : image_(std::move(image)),
       layers_(image_.light_sums.size()),
+      has_been_composed_(image_.light_sums.size(), 0),
       residency_(residency),
       lights_(std::move(lights)),
       classes_(options.atoms > 0),

@@ -81,7 +81,7 @@ class StoredImage {
   /// Of the path integrator (stored_sums.cpp). Tiles may be done at the same time.
   void keep_sums(std::size_t tile, PackedSums sums);
   /// Works the pixels of a tile out from its sums, adds those that differ to `changed`. `colors`: of all sums. Keeps the
-  /// tile's layers if they are worth their room.
+  /// tile's layers from the second time on, if they are worth their room.
   void refresh_from_sums(std::size_t tile, std::span<const LightColor> colors, TileMask& changed);
 
  private:
@@ -109,7 +109,8 @@ class StoredImage {
     TileLayers layers;  // of a tile whose layers are not kept
     TileLayers::Working working;
   };
-  std::vector<TileLayers> layers_;  // by tile; of paths
+  std::vector<TileLayers> layers_;              // by tile; of paths
+  std::vector<std::uint8_t> has_been_composed_;  // by tile: from the sums as they are
   Pool<LayerWork> layer_work_;
   Residency& residency_;
   std::vector<LightId> lights_;

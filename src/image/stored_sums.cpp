@@ -23,6 +23,7 @@ void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {
   const auto lease = residency_.use(PieceKind::light_sums, tile);
   image_.light_sums[tile] = std::move(sums);
   note_sums(residency_, tile, image_.light_sums[tile]);
+  has_been_composed_[tile] = 0;
   if (residency_.is_watched())
     residency_.forget(PieceKind::light_layers, tile);
   else
@@ -48,6 +49,8 @@ void StoredImage::refresh_from_sums(std::size_t tile, std::span<const LightColor
   }
   work->layers.forget();
   put_pixels(tile, planes(tile, colors, work->layers, work->working), changed);
+  // Memory that is new takes longer than to work all layers out once.
+  if (std::exchange(has_been_composed_[tile], std::uint8_t{1}) == 0) return;
   if (!residency_.is_worth_room(PieceKind::light_layers, tile, work->layers.bytes())) return;
   kept = std::exchange(work->layers, TileLayers());
   note_layers(tile);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -55,6 +57,32 @@ class Residence : public testing::Test {
 };
 
 using Tiles = std::vector<std::size_t>;
+
+TEST_F(Residence, writes_no_derived_pieces_and_does_not_count_them) {
+  Residency& residency = start(3 * kPieceBytes, true);
+  std::array<bool, kTiles> is_there{};
+  PieceHandler derived;
+  derived.drop = [&](std::size_t tile) { is_there[tile] = false; };
+  derived.may_be_missing = derived.is_derived = true;
+  residency.add_kind(PieceKind::light_layers, kTiles, std::move(derived));
+  for (std::size_t tile = 0; tile < kTiles; ++tile) {
+    is_there[tile] = true;
+    residency.set(PieceKind::light_layers, tile, kPieceBytes, 1e-6);
+  }
+  EXPECT_EQ(std::ranges::count(is_there, true), 3);
+  for (std::size_t tile = 0; tile < kTiles; ++tile) {
+    const bool was_there = is_there[tile];
+    const auto lease = residency.use(PieceKind::light_layers, tile);
+    EXPECT_EQ(is_there[tile], was_there) << "nothing brings them back";
+  }
+  set(0);  // what takes longer to have back stays, they go
+  EXPECT_TRUE(is_resident(0));
+  EXPECT_EQ(std::ranges::count(is_there, true), 2);
+  const PieceCounts counts = residency.take_counts();
+  EXPECT_EQ(counts.evicted, PieceCounts().evicted);
+  EXPECT_EQ(counts.reloaded, PieceCounts().reloaded);
+  EXPECT_EQ(counts.evicted_bytes, 0U);
+}
 
 TEST_F(Residence, keeps_within_the_limit_and_gives_back_what_was_spilled) {
   Residency& residency = start(3 * kPieceBytes, true);

@@ -95,6 +95,22 @@ TEST(SumsCache, round_trip_restores_every_sum) {
   EXPECT_EQ(read_file(trees_of(folder / "again")), read_file(trees_of(folder / "c")));
 }
 
+TEST(SumsCache, lights_that_share_a_sum_have_one) {
+  const ScratchFolder folder("cache");
+  CacheContent written = path_content(), read;
+  written.lights = 3;
+  written.shared = 2;
+  write_cache(folder / "c", written);
+  const CacheAnswer answer = read_cache(folder / "c", read);
+  ASSERT_EQ(answer.fault, CacheFault::none) << answer.file << ": " << answer.detail;
+  EXPECT_EQ(read.lights, 3U);
+  EXPECT_EQ(read.shared, 2U);
+  EXPECT_EQ(read.image.light_sums, written.image.light_sums);
+  written.shared = 1;
+  write_cache(folder / "c", written);
+  EXPECT_EQ(fault_of(folder / "c"), CacheFault::damaged);
+}
+
 TEST(SumsCache, the_integrator_and_its_depths_are_options) {
   const ScratchFolder folder("cache");
   CacheContent content = path_content();

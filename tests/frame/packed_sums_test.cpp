@@ -83,6 +83,38 @@ TEST(PackedSums, hold_values_of_all_widths) {
   }
 }
 
+TEST(PackedSums, round_values_of_all_widths_once) {
+  std::mt19937_64 random(11);
+  for (int bits = 1; bits <= 126; ++bits)
+    for (int repetition = 0; repetition < 20; ++repetition) {
+      // Halfway between two doubles, or next to that, or anything, of either sign.
+      Uint128 steps = (Uint128{random()} << 64 | random()) >> (128 - bits) | Uint128{1} << (bits - 1);
+      const int kept = bits - 53;
+      if (kept > 0 && repetition % 4 != 0) {
+        steps = (steps >> kept << kept) + (Uint128{1} << (kept - 1));
+        if (repetition % 4 == 2) ++steps;
+        if (repetition % 4 == 3) --steps;
+      }
+      const auto shape = [&] {
+        const auto width = static_cast<std::uint8_t>(bits / 8 + 1);
+        return std::vector<SumShape>{{0, width, 0}, {0, 0, 0}};
+      }();
+      const std::size_t width = shape[0].width;
+      const Uint128 values[] = {steps, -steps, Uint128{1}};  // the last one: no byte is left out
+      Bytes bytes;
+      for (const Uint128 value : values) {
+        const BytesView all = std::as_bytes(std::span(&value, 1));
+        bytes.insert(bytes.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(width));
+      }
+      const PackedSums packed = PackedSums::of_parts(shape, 1, bytes);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        std::vector<double> value(1);
+        packed.channel_values(0, channel, value);
+        EXPECT_EQ(value[0], value_of({values[channel]})) << bits << " bits";
+      }
+    }
+}
+
 TEST(PackedSums, take_no_more_bytes_than_they_need) {
   const auto shape = [](const TileSums& sums) { return PackedSums::pack(sums).shapes()[0]; };
   EXPECT_EQ(shape(TileSums(1, 5)), (SumShape{0, 0, 0}));

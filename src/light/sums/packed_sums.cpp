@@ -59,6 +59,30 @@ void read_narrow(const std::byte* place, std::size_t step, SumShape shape, std::
   }
 }
 
+/// Values of 8 to kMiddleBytes bytes. The highest 7 are `high`, the others `low`. The nearest double to `high`, and what
+/// it leaves out together with `low`, are doubles without an error (the second is less than 2^51), so that their sum is
+/// rounded once.
+constexpr std::size_t kMiddleBytes = 13;
+RELOOK_VECTOR_CLONES
+void read_middle(const std::byte* place, std::size_t step, SumShape shape, std::span<double> values) {
+  constexpr int kHighBytes = 7;
+  const int low_bits = 8 * (shape.width - kHighBytes);
+  const std::uint64_t low_mask = (std::uint64_t{1} << low_bits) - 1;
+  const std::size_t end = shape.width - sizeof(std::uint64_t);
+  const double unit = unit_of(shape), high_unit = static_cast<double>(std::int64_t{1} << low_bits);
+  for (double& value : values) {
+    std::uint64_t low = 0, last = 0;
+    std::memcpy(&low, place, sizeof low);
+    std::memcpy(&last, place + end, sizeof last);
+    const std::int64_t high = static_cast<std::int64_t>(last) >> 8;
+    const auto rounded = static_cast<double>(high);
+    const std::int64_t rest = (high - static_cast<std::int64_t>(rounded)) * (std::int64_t{1} << low_bits) +
+                              static_cast<std::int64_t>(low & low_mask);
+    value = (rounded * high_unit + static_cast<double>(rest)) * unit;
+    place += step;
+  }
+}
+
 RELOOK_VECTOR_CLONES
 void read_wide(const std::byte* place, std::size_t step, SumShape shape, std::span<double> values) {
   const int above = 128 - 8 * shape.width;
@@ -177,6 +201,8 @@ void PackedSums::read_values(std::size_t row, std::size_t first, std::size_t ste
   const std::byte* const place = values_.data() + starts_[row] + first * shape.width;
   if (shape.width <= sizeof(std::uint64_t))
     read_narrow(place, step * shape.width, shape, values);
+  else if (shape.width <= kMiddleBytes)
+    read_middle(place, step * shape.width, shape, values);
   else
     read_wide(place, step * shape.width, shape, values);
 }

@@ -1,5 +1,6 @@
-// A step of a replay under the path integrator: edits of lights' colours cost pixels, edits of one light its own rays, all
-// others the samples that they reach. The frame afterwards equals render() of the edited scene, bit for bit.
+// A step of a replay under the path integrator: edits of lights' colours cost pixels, in a sum that lights share the
+// samples that they light, edits of one light its own rays, all others the samples that they reach. The frame afterwards
+// equals render() of the edited scene, bit for bit.
 #pragma once
 #include "edit/apply.h"
 #include "replay/replay_parts.h"

@@ -51,19 +51,18 @@ ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
   }
   if (!target) return segment;
   const Direction& to_light = target->way;
-  segment.faces = point.shading.dot(to_light) > 0;
-  if (!segment.faces && !node.has_back) return segment;
   const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));
-  if (segment.faces) {
+  if (point.shading.dot(to_light) > 0) {
     // A light near the horizon of the triangle is judged from the smooth surface.
     constexpr float kHorizon = 0.1F;  // cosine
     const float share = std::fmin(std::fmax(1.0F - height / kHorizon, 0.0F), 1.0F);
     segment.origin = point.position + point.lift * share + point.geometric * point.offset;
-  } else {
-    segment.faces = height < 0 && lights_back(node, light);
-    if (!segment.faces) return segment;
+  } else if (height < 0 && lights_back(node, light)) {
     segment.origin = point.position - point.geometric * point.offset;
+  } else {
+    return segment;
   }
+  segment.faces = true;
   segment.direction = target->has_place ? target->at - segment.origin : to_light;
   segment.t_max = target->has_place ? target->reach : std::numeric_limits<float>::infinity();
   return segment;

@@ -293,22 +293,21 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
   const auto bent = [&](SpawnedRay* ray) {
     if (optics.bent || object.blurs) note_refraction(ray);
   };
-  const CoverageChoice coverage = coverage_choice(node, object);
-  if (optics.transparent && coverage.goes_on()) bent(add_straight_ray(spawner, node, object, is_deep));
-  if (!coverage.sees_surface()) return;
   const auto refracted = [&](SpawnedRay* ray) {
     bent(ray);
     if (ray == nullptr) return;
     ++ray->path.transmission;
     ray->path.gathers = gathers || ray->path.transmission > rule.transmission_depth;
   };
+  const CoverageChoice coverage = coverage_choice(node, object);
+  if (optics.transparent && coverage.goes_on()) bent(add_straight_ray(spawner, node, object, is_deep));
+  if (!coverage.sees_surface()) return;
   const Interface interface(node, object);
   if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
   // Where what goes through is blurred, a lobe stands for it, but for rays that only gather.
-  if (gathers || !object.blurs) {
-    interface.refract(spawner, false, refracted);
-    interface.refract(spawner, true, refracted);
-  }
+  const bool is_smooth = gathers || !object.blurs;
+  if (is_smooth) interface.refract(spawner, false, refracted);
+  if (is_smooth) interface.refract(spawner, true, refracted);
   if (gathers) return;
   const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
   if (!lobes.any()) return;

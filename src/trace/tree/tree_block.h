@@ -50,8 +50,8 @@ struct RayNode {
   Hit hit;
   SpawnedRay ray;                                     // that led here
   BranchSet cut;                                      // branches that the Fresnel cut-off removed
-  bool has_back = false;                              // light from behind reaches it, too: it is thin and blurs
   CoverageChoice coverage;                            // of the path integrator
+  bool has_back = false;                              // light from behind reaches it, too: it is thin and blurs
   float t = std::numeric_limits<float>::quiet_NaN();  // of the meeting; NaN: not known
   float length = 0;                                   // metres from the ray's origin
   float footprint = 0;                                // metres: ray-cone width at the hit over the cosine of incidence
