@@ -59,6 +59,7 @@ TEST(PathClasses, color_rows) {
       {kGold + "emissiveFactor", "[0.5, 0, 0]", "[1, 0, 0]"},
       {kGold + "pbrMetallicRoughness/roughnessFactor", "0.52", "0.68"},  // alpha in [1/4, 1/2)
       {kGold + "pbrMetallicRoughness/metallicFactor", "0.3", "0.7"},
+      {"/materials/Phong/extras/relook/shininess", "8", "15"},  // in [8, 16)
       {kGold + "pbrMetallicRoughness/baseColorFactor", "[1, 1, 1, 1]", "[0, 0, 1, 1]"},
       {kCoat + "clearcoatFactor", "0.5", "1"},
   };

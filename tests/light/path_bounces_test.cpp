@@ -47,6 +47,25 @@ TEST(PathBounces, the_depth_of_all_rays_ends_bounces_too) {
   expect_measured(lower_plate(4, 3), of_plates(3), "depth 3", 3e-3);
 }
 
+TEST(PathBounces, surfaces_are_passed_as_often_as_the_depth_of_transmission_says) {
+  // Behind as many panes of no index more than the depth a ray still brings what shines, and nothing that is lit.
+  for (const bool is_unlit : {false, true})
+    for (const std::uint32_t depth : {0U, 1U, 2U, 3U}) {
+      PathStudio scene;
+      scene.node("Card", {{"mesh", scene.mesh("Card", card_mesh(4, 4),
+                                              scene.material("Card", is_unlit ? unlit(0.5, 0.5, 0.5) : lambert(0.5)))}});
+      const int pane = scene.mesh("Pane", card_mesh(4, 4), scene.material("Pane", glass(1, 0)));
+      for (const double z : {1.0, 1.5}) scene.node("Pane" + std::to_string(z), {{"mesh", pane}, {"translation", {0, 0, z}}});
+      scene.light("Sun", {{"type", "directional"}, {"intensity", kPi}}, {{"rotation", shining({0, 0, -1})}});
+      scene.look_at(Point(0, 0, 3), Point(0, 0, 0), 1, 1, 1);
+      ViewOptions view;
+      view.integrator = Integrator::path;
+      view.transmission_depth = depth;
+      const Rgba seen = rendered(scene.path_state().scene(), view).pixels.at(0);
+      EXPECT_NEAR(seen.r, is_unlit || depth >= 2 ? 0.5 : 0, 1e-4) << "depth " << depth << (is_unlit ? ", unlit" : "");
+    }
+}
+
 TEST(PathBounces, a_room_that_shines_is_brighter_by_a_power_of_its_albedo_for_each_bounce) {
   // Every ray ends on a wall of radiance 1: the sum of rho^k up to N + 1.
   for (const std::uint32_t bounces : {0U, 1U, 2U, 5U}) {

@@ -147,6 +147,28 @@ TEST(PathReference, thin_filters_and_blended_cards_before_a_window) {
   expect_reference(scene, "filters");
 }
 
+TEST(PathReference, rough_panes_before_lamps_and_windows) {
+  // Seen by the eye, by a mirror and by what scatters, of a lamp without size and of a window, across bounces.
+  for (const double roughness : {0.2, 0.8})
+    for (const double thickness : {0.0, 1.0}) {
+      Json pane = glass(1.5, thickness);
+      pane["doubleSided"] = true;
+      pane["pbrMetallicRoughness"]["roughnessFactor"] = roughness;
+      pane["pbrMetallicRoughness"]["baseColorFactor"] = {0.9, 0.7, 0.4, 1};
+      pane["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.8;
+      PathStudio scene = ball_studio(surface(1, 0.1), surface(0.2, 0.6));
+      const Mesh mesh = thickness > 0 ? box_mesh(Point(0.9F, 0.9F, 0.1F)) : card_mesh(0.9F, 0.9F);
+      scene.node("Pane", {{"mesh", scene.mesh("Pane", mesh, scene.material("Pane", pane))},
+                          {"translation", {0.9, 1, 1.6}},
+                          {"rotation", shining({-0.3, 0, -1})}});
+      add_window(scene);
+      scene.light("Lamp", {{"type", "point"}, {"intensity", 12}}, {{"translation", {0.8, 1.2, -1.5}}});
+      scene.environment({{"color", {0.1, 0.2, 0.4}}});
+      expect_reference(scene, "roughness " + std::to_string(roughness) + ", thickness " + std::to_string(thickness), 64,
+                       1);
+    }
+}
+
 TEST(PathReference, diffuse_bounces_in_a_corner_of_gloss_and_glass) {
   for (const unsigned bounces : {1U, 3U}) {
     PathStudio scene = ball_studio(glass(1.5, 1), surface(0.3, 0.5));
