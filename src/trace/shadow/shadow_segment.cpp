@@ -51,8 +51,10 @@ ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
   }
   if (!target) return segment;
   const Direction& to_light = target->way;
+  const bool is_above = point.shading.dot(to_light) > 0;
+  if (!is_above && !node.has_back) return segment;
   const float height = point.geometric.dot(to_light) / std::sqrt(to_light.dot(to_light));
-  if (point.shading.dot(to_light) > 0) {
+  if (is_above) {
     // A light near the horizon of the triangle is judged from the smooth surface.
     constexpr float kHorizon = 0.1F;  // cosine
     const float share = std::fmin(std::fmax(1.0F - height / kHorizon, 0.0F), 1.0F);
