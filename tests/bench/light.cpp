@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "bare_rays.h"
+#include "frame/frame_file.h"
 #include "image/render.h"
 
 namespace relook {
@@ -30,8 +31,13 @@ std::vector<Edit> edits_of(const JournalStep& step) {
   return {step.edit};
 }
 
+/// What a full render and the encoding of its frame take.
+struct FullSeconds {
+  double render = 0, frame = 0;
+};
+
 void print_step(const BenchOptions& options, Replayer& replayer, const Journal& journal, const JournalStep& step,
-                double full_seconds) {
+                const FullSeconds& full) {
   const std::vector<Edit> edits = edits_of(step);
   const Edit inverse = inverse_of(edits.front(), replayer.state().document().look);
   const TimedStep first = timed(replayer, StepKind::step, edits.front(), journal);
@@ -39,12 +45,13 @@ void print_step(const BenchOptions& options, Replayer& replayer, const Journal& 
   const TimedStep later = timed(replayer, StepKind::step, edits.front(), journal);
   for (std::size_t i = 1; i < edits.size(); ++i) static_cast<void>(timed(replayer, StepKind::step, edits[i], journal));
   const Counters& counters = later.result.counters;
-  std::printf("  %-34s %-10s %9.0f %9.0f %8.1f %% %8.1f %%\n", step.name.substr(0, 34).c_str(),
+  std::printf("  %-34s %-10s %9.1f %9.1f %9.1f %8.1f %% %8.1f %%\n", step.name.substr(0, 34).c_str(),
               std::string(change_class_name(first.result.classification.change)).c_str(),
-              full_seconds / first.seconds, full_seconds / later.seconds,
+              full.render / first.seconds, full.render / later.seconds,
+              (full.render + full.frame) / (later.seconds + full.frame),
               100.0 * static_cast<double>(counters.samples_affected) / static_cast<double>(counters.samples_total),
               100.0 * static_cast<double>(counters.pixels_changed) / options.pixels());
-  options.note("Light", step.name, "full render / later edit", full_seconds / later.seconds);
+  options.note("Light", step.name, "full render / later edit", full.render / later.seconds);
 }
 
 }  // namespace
@@ -74,8 +81,11 @@ void print_light(const BenchOptions& given) {
   print_memory(replayer->image(), replayer->resident());
   if (options.journal == "-") return;
   const Journal journal = read_journal(options.journal);
-  std::printf("  %-34s %-10s %9s %9s %10s %10s\n", "edit", "class", "full/1st", "full/2nd", "samples", "pixels");
-  for (const JournalStep& step : journal.steps) print_step(options, *replayer, journal, step, full_seconds);
+  FullSeconds full{full_seconds, 0};
+  full.frame = time_of([&] { static_cast<void>(encode_exr(replayer->image().frame, {}, PixelFormat::half)); });
+  std::printf("  %-34s %-10s %9s %9s %9s %10s %10s\n", "edit", "class", "full/1st", "full/2nd", "with EXR", "samples",
+              "pixels");
+  for (const JournalStep& step : journal.steps) print_step(options, *replayer, journal, step, full);
 }
 
 }  // namespace relook
