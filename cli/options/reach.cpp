@@ -105,7 +105,8 @@ bool has_names_of_cache(const fs::path& folder) {
 /// Adds the folders above an output that may be a cache or a run: an output must not lie in one, so the program looks
 /// whether they are.
 void add_owners(const fs::path& output, Paths& readable) {
-  for (fs::path folder = without_links(output).parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
+  for (fs::path folder = without_links(output).parent_path(); folder.has_relative_path();
+       folder = folder.parent_path()) {
     if (has_names_of_cache(folder)) readable.push_back(folder);
     for (const std::string_view name : {std::string_view(kReportName), std::string_view(kProgressName)})
       readable.push_back(folder / name);

@@ -8,7 +8,7 @@
 namespace relook {
 namespace {
 
-constexpr std::size_t kChannels = 3;
+constexpr std::size_t kValuesOfPixel = 3;
 constexpr LightColor kBlack{0, 0, 0};
 
 /// As layer() does it.
@@ -47,8 +47,8 @@ void TileLayers::work_out(const PackedSums& sums, std::size_t sum, const LightCo
                           Layer& layer, Working& working) {
   const std::size_t pixels = sums.pixels();
   working.sums.resize(pixels);
-  layer.values.resize(kChannels * pixels);
-  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+  layer.values.resize(kValuesOfPixel * pixels);
+  for (std::size_t channel = 0; channel < kValuesOfPixel; ++channel) {
     sums.channel_values(sum, channel, working.sums);
     scale(working.sums, color[channel], samples, layer.values.data() + channel * pixels);
   }
@@ -61,7 +61,7 @@ TileLayers::Planes TileLayers::compose(const PackedSums& sums, std::span<const L
   require(colors.size() == sums.sums(), "a colour a sum");
   if (empty()) begin(sums, samples, working);
   const std::size_t pixels = sums.pixels();
-  working.pixels.assign(kChannels * pixels, 0.0F);
+  working.pixels.assign(kValuesOfPixel * pixels, 0.0F);
   for (std::size_t i = 0; i < layers_.size(); ++i) {
     Layer& layer = layers_[i];
     // A layer of zeros, of either sign, changes nothing: the sum begins with +0. The layer before stays for when the

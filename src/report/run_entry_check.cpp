@@ -16,7 +16,7 @@ constexpr std::string_view kFile = "report.json";
 constexpr std::size_t kHashDigits = 32, kCommandDigits = 16;
 constexpr std::string_view kSealStart = ",\"seal\":\"", kSealEnd = "\"}";
 constexpr double kMostSeconds = 1e9;
-constexpr std::int64_t kMostFrames = 1'000'000;
+constexpr std::int64_t kMostFrameNumber = 1'000'000;
 
 constexpr std::array<std::string_view, 37> kMembers{
     "step",           "name",       "class",         "reasons",        "drag_frame",       "wedge_frame",
@@ -75,10 +75,10 @@ void check_members(const JsonView& view) {
 
 void check_numbers(const JsonView& view) {
   for (const std::string_view count : kCounts) check_count(view.at(count));
-  (void)view.at("step").integer(0, kMostFrames);
+  (void)view.at("step").integer(0, kMostFrameNumber);
   (void)view.at("exposure").number(-kMostExposure, kMostExposure);
   for (const char* kind : {"drag_frame", "wedge_frame"})
-    if (const JsonView number = view.at(kind); !number.value().is_null()) (void)number.integer(1, kMostFrames);
+    if (const JsonView number = view.at(kind); !number.value().is_null()) (void)number.integer(1, kMostFrameNumber);
   if (!view.at("drag_frame").value().is_null() && !view.at("wedge_frame").value().is_null())
     view.at("wedge_frame").fail("a frame of a drag is none of a wedge");
   view.at("seconds").only_keys(kPhases);

@@ -61,7 +61,8 @@ TEST_F(Files, what_is_written_is_read_back) {
 
 TEST_F(Files, only_regular_files_are_read) {
   ASSERT_EQ(::mkfifo((folder_ / "fifo").c_str(), 0600), 0);
-  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "fifo"); }).find("is not a regular file"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "fifo"); }).find("is not a regular file"),
+            std::string::npos);
   EXPECT_NE(message_of_error([&] { (void)read_file(folder_); }).find("is a folder"), std::string::npos);
   EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "none"); }).find("no such file"), std::string::npos);
   EXPECT_NE(message_of_error([&] { (void)read_file("/dev/zero"); }).find("is not a regular file"), std::string::npos);
@@ -70,7 +71,8 @@ TEST_F(Files, only_regular_files_are_read) {
 TEST_F(Files, size_limit_is_kept) {
   write_file(folder_ / "ten", std::string_view("0123456789"));
   EXPECT_EQ(read_file(folder_ / "ten", 10).size(), 10U);
-  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "ten", 9); }).find("has 10 bytes; at most 9"), std::string::npos);
+  EXPECT_NE(message_of_error([&] { (void)read_file(folder_ / "ten", 9); }).find("has 10 bytes; at most 9"),
+            std::string::npos);
 }
 
 TEST_F(Files, contained_paths_stay_inside) {

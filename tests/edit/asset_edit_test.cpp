@@ -6,13 +6,10 @@
 
 #include "edit/apply.h"
 #include "look_fixture.h"
+#include "refusal.h"
 
 namespace relook {
 namespace {
-
-Json look_at(const SceneState& state, const char* pointer) {
-  return state.document().look.at(Json::json_pointer(pointer));
-}
 
 /// A folder with an image and a glTF file beside a journal.
 class AssetFolder : public ::testing::Test {

@@ -45,7 +45,7 @@ std::string range_wedge(const std::string& path, std::size_t count) {
 Journal parsed(const std::vector<std::string>& steps) { return parse_journal(journal_of(steps), "j.json"); }
 
 /// What a journal on small_state() is refused with, with the document as before.
-std::string refusal(const std::vector<std::string>& steps) {
+std::string refusal_of_steps(const std::vector<std::string>& steps) {
   SceneState state = small_state();
   const Json look = state.document().look;
   const std::string scene = scene_text(state.scene());
@@ -65,7 +65,7 @@ const std::string kMostInEntryText =
 TEST(Growth, copies_into_themselves_end_where_values_would_lie_too_deep) {
   std::vector<std::string> operations{add(kGold + "a", R"({"b": 1})")};
   for (int i = 0; i < 5000; ++i) operations.push_back(transfer("copy", kGold + "a", kGold + "a/b"));
-  EXPECT_EQ(refusal({step_of(operations)}),
+  EXPECT_EQ(refusal_of_steps({step_of(operations)}),
             "j.json: /steps/0/edit/59/path: this would nest values deeper than 64 levels");
 }
 
@@ -73,14 +73,15 @@ TEST(Growth, moves_and_adds_end_where_values_would_lie_too_deep) {
   const std::string deep = std::string(40, '[') + std::string(40, ']');
   std::string below = kGold + "a";
   for (int i = 0; i < 39; ++i) below += "/0";
+  EXPECT_EQ(refusal_of_steps({step_of(
+                {add(kGold + "a", deep), add(kGold + "b", deep), transfer("move", kGold + "b", below + "/0")})}),
+            "j.json: /steps/0/edit/2/path: this would nest values deeper than 64 levels");
+  EXPECT_EQ(refusal_of_steps({step_of({add(kGold + "a", deep), add(below + "/-", deep)})}),
+            "j.json: /steps/0/edit/1/value: this would nest values deeper than 64 levels");
   EXPECT_EQ(
-      refusal({step_of({add(kGold + "a", deep), add(kGold + "b", deep), transfer("move", kGold + "b", below + "/0")})}),
-      "j.json: /steps/0/edit/2/path: this would nest values deeper than 64 levels");
-  EXPECT_EQ(refusal({step_of({add(kGold + "a", deep), add(below + "/-", deep)})}),
-            "j.json: /steps/0/edit/1/value: this would nest values deeper than 64 levels");
-  EXPECT_EQ(refusal({step_of({add(kGold + "a", deep), R"({"op": "replace", "path": ")" + below + R"(", "value": )" +
-                                                          std::string(40, '[') + std::string(40, ']') + "}"})}),
-            "j.json: /steps/0/edit/1/value: this would nest values deeper than 64 levels");
+      refusal_of_steps({step_of({add(kGold + "a", deep), R"({"op": "replace", "path": ")" + below + R"(", "value": )" +
+                                                             std::string(40, '[') + std::string(40, ']') + "}"})}),
+      "j.json: /steps/0/edit/1/value: this would nest values deeper than 64 levels");
 }
 
 TEST(Growth, doubling_copies_end_at_what_an_entry_may_have) {
@@ -91,14 +92,14 @@ TEST(Growth, doubling_copies_end_at_what_an_entry_may_have) {
     values.push_back(copy);
     text.push_back(copy);
   }
-  EXPECT_EQ(refusal({step_of(values)}), "j.json: /steps/0/edit/16/path: " + kMostInEntryText);
-  EXPECT_EQ(refusal({step_of(text)}), "j.json: /steps/0/edit/13/path: " + kMostInEntryText);
+  EXPECT_EQ(refusal_of_steps({step_of(values)}), "j.json: /steps/0/edit/16/path: " + kMostInEntryText);
+  EXPECT_EQ(refusal_of_steps({step_of(text)}), "j.json: /steps/0/edit/13/path: " + kMostInEntryText);
 }
 
 TEST(Growth, copies_of_entries_end_at_what_a_journal_may_copy) {
   std::vector<std::string> steps{step_of({add("/materials/Gold/name", "\"" + std::string(2U << 20U, 'x') + "\"")})};
   for (int i = 0; i < 30; ++i) steps.push_back(step_of({transfer("copy", "/materials/Gold", "/materials/G")}));
-  const std::string message = refusal(steps);
+  const std::string message = refusal_of_steps(steps);
   EXPECT_EQ(message, "j.json: /steps/16/edit/0/path: " + kMostCopiedText);
 }
 
@@ -109,7 +110,7 @@ TEST(Growth, a_tree_of_nodes_copied_below_itself_is_counted_before_it_is_copied)
     operations.push_back(transfer("copy", "/nodes/A", copy));
     operations.push_back(add("/nodes/A/children/-", "\"C" + std::to_string(i) + "\""));
   }
-  const std::string message = refusal({step_of(operations)});
+  const std::string message = refusal_of_steps({step_of(operations)});
   EXPECT_TRUE(message.starts_with("j.json: /steps/0/edit/")) << message;
   EXPECT_TRUE(message.ends_with("/path: " + kMostCopiedText)) << message;
 }
@@ -118,14 +119,14 @@ TEST(Growth, what_was_wrong_before_is_said_with_the_limit) {
   const std::string wrong = step_of({R"({"op": "remove", "path": "/nodes/Nobody"})"});
   std::vector<std::string> operations{add(kGold + "a", "[0]")};
   for (int i = 0; i < 30; ++i) operations.push_back(transfer("copy", kGold + "a", kGold + "a/-"));
-  EXPECT_EQ(refusal({wrong, step_of(operations), wrong}),
+  EXPECT_EQ(refusal_of_steps({wrong, step_of(operations), wrong}),
             "j.json: /steps/0/edit/0/path: no node \"Nobody\"\nj.json: /steps/1/edit/16/path: " + kMostInEntryText);
 }
 
 TEST(Growth, usual_copies_are_no_growth) {
   std::vector<std::string> steps;
   for (int i = 0; i < 1000; ++i) steps.push_back(step_of({transfer("copy", "/materials/Gold", "/materials/Glass")}));
-  EXPECT_EQ(refusal(steps), "");
+  EXPECT_EQ(refusal_of_steps(steps), "");
 }
 
 TEST(Growth, a_journal_has_a_million_frames_at_most) {

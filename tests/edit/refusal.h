@@ -10,7 +10,7 @@
 namespace relook {
 
 /// What the look document says at a pointer.
-inline Json look_at(const SceneState& state, const char* pointer) {
+inline Json look_at(const SceneState& state, const std::string& pointer) {
   return state.document().look.at(Json::json_pointer(pointer));
 }
 

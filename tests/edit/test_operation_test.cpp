@@ -3,16 +3,13 @@
 
 #include "edit/apply.h"
 #include "look_fixture.h"
+#include "refusal.h"
 
 namespace relook {
 namespace {
 
 Json operation(const char* op, const std::string& path, const Json& value) {
   return {{"op", op}, {"path", path}, {"value", value}};
-}
-
-Json look_at(const SceneState& state, const std::string& pointer) {
-  return state.document().look.at(Json::json_pointer(pointer));
 }
 
 /// What there is to refer to besides the fixture's own: variants, a displaced node.

@@ -8,7 +8,7 @@
 #include <limits>
 #include <set>
 
-#include "even_points.h"
+#include "hammersley.h"
 #include "pi.h"
 
 namespace relook {
@@ -31,7 +31,7 @@ double corner_factor(double a, double b) {
 double sampled_factor(const EmissionLight& light, std::uint32_t points) {
   double sum = 0;
   for (std::uint32_t i = 0; i < points; ++i)
-    if (const auto emitter = light.sample({0, 0, 0}, even_point(i, points)))
+    if (const auto emitter = light.sample({0, 0, 0}, hammersley_point(i, points)))
       sum += static_cast<double>(emitter->way.y / emitter->density) / kPi / points;
   return sum;
 }
@@ -60,7 +60,7 @@ TEST(EmissionLight, DensityIntegratesToOne) {
     const auto& at = triangles[k].at;
     const Direction normal = (at[1] - at[0]).cross(at[2] - at[0]);
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-      const Uv u = even_point(i, kPoints);
+      const Uv u = hammersley_point(i, kPoints);
       const float root = std::sqrt(u.x);
       const Direction to = at[0] * (1 - root) + at[1] * (root * (1 - u.y)) + at[2] * (root * u.y) - from;
       const float distance = to.length();
@@ -79,7 +79,7 @@ TEST(EmissionLight, SamplesFollowTheirDensity) {
   constexpr std::uint32_t kPoints = 1 << 14;
   std::array<double, 8> shares{};  // by triangle and which corner is nearest, or none
   for (std::uint32_t i = 0; i < kPoints; ++i) {
-    const auto emitter = light.sample(from, even_point(i, kPoints));
+    const auto emitter = light.sample(from, hammersley_point(i, kPoints));
     ASSERT_TRUE(emitter);
     const auto& [a, b, c] = triangles[emitter->triangle].at;
     const float b0 = 1 - emitter->b1 - emitter->b2;
@@ -99,12 +99,12 @@ TEST(EmissionLight, BacksAreDarkUnlessTwoSided) {
   const Point above(0.2F, 2, 0.3F);
   const Direction down(0, -1, 0), up(0, 1, 0);
   const EmissionLight one_sided(triangles);
-  for (std::uint32_t i = 0; i < 16; ++i) EXPECT_FALSE(one_sided.sample(above, even_point(i, 16)));
+  for (std::uint32_t i = 0; i < 16; ++i) EXPECT_FALSE(one_sided.sample(above, hammersley_point(i, 16)));
   EXPECT_EQ(one_sided.density(0, above, down, 1), 0);
   EXPECT_GT(one_sided.density(0, {0.2F, 0, 0.3F}, up, 1), 0);
   for (EmissionTriangle& triangle : triangles) triangle.two_sided = true;
   const EmissionLight two_sided(triangles);
-  for (std::uint32_t i = 0; i < 16; ++i) EXPECT_TRUE(two_sided.sample(above, even_point(i, 16)));
+  for (std::uint32_t i = 0; i < 16; ++i) EXPECT_TRUE(two_sided.sample(above, hammersley_point(i, 16)));
   EXPECT_EQ(two_sided.density(0, above, down, 1), two_sided.density(0, {0.2F, 0, 0.3F}, up, 1));
   // From its own plane and from a point of its own.
   EXPECT_FALSE(two_sided.sample({5, 1, 0.5F}, {0.3F, 0.3F}));
@@ -128,7 +128,7 @@ TEST(EmissionLight, WhatCannotShineIsNeverChosen) {
   mixed.insert(mixed.begin(), bad.begin(), bad.end());
   const EmissionLight light(mixed);
   for (std::uint32_t i = 0; i < 4096; ++i) {
-    const auto emitter = light.sample({0, 0, 0}, even_point(i, 4096));
+    const auto emitter = light.sample({0, 0, 0}, hammersley_point(i, 4096));
     ASSERT_TRUE(emitter);
     ASSERT_TRUE(emitter->triangle == 4 || emitter->triangle == mixed.size() - 1) << emitter->triangle;
     ASSERT_TRUE(std::isfinite(emitter->density));

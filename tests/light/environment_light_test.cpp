@@ -11,6 +11,7 @@
 #include <random>
 
 #include "base/files.h"
+#include "hammersley.h"
 #include "light/luminance.h"
 #include "pi.h"
 #include "scene/texture/decode_pyramid.h"
@@ -19,10 +20,10 @@ namespace relook {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-using Image = std::shared_ptr<const TexturePyramid>;
+using SkyImage = std::shared_ptr<const TexturePyramid>;
 
-Image image_of(std::uint32_t width, std::uint32_t height,
-               const std::function<Color(std::uint32_t, std::uint32_t)>& texel) {
+SkyImage image_of(std::uint32_t width, std::uint32_t height,
+                  const std::function<Color(std::uint32_t, std::uint32_t)>& texel) {
   std::vector<float> texels;
   for (std::uint32_t y = 0; y < height; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
@@ -33,8 +34,8 @@ Image image_of(std::uint32_t width, std::uint32_t height,
 }
 
 /// A colour of all but black, and texels of `hot` luminance at these places.
-Image image_with_suns(std::uint32_t width, std::uint32_t height, float hot,
-                      const std::vector<std::pair<std::uint32_t, std::uint32_t>>& places) {
+SkyImage image_with_suns(std::uint32_t width, std::uint32_t height, float hot,
+                         const std::vector<std::pair<std::uint32_t, std::uint32_t>>& places) {
   return image_of(width, height, [&, random = std::mt19937(3)](std::uint32_t x, std::uint32_t y) mutable {
     const auto next = [&] { return static_cast<float>(random() % 1000) / 1000; };
     const Color sky(0.5F + next(), 0.5F + next(), 0.5F + next());
@@ -43,7 +44,7 @@ Image image_with_suns(std::uint32_t width, std::uint32_t height, float hot,
 }
 
 /// Suns in a row, alone, over the seam and at both poles.
-Image hard_image() {
+SkyImage hard_image() {
   return image_with_suns(40, 20, 900, {{7, 5}, {8, 5}, {8, 6}, {0, 12}, {39, 11}, {20, 0}, {3, 19}, {4, 19}});
 }
 
@@ -112,10 +113,10 @@ TEST(EnvironmentLight, DirectionsAreReadWhereTheyComeFrom) {
 }
 
 TEST(EnvironmentLight, EvenImagesHaveNoSuns) {
-  const std::vector<Image> images{nullptr, image_of(8, 4, [](auto, auto) { return Color(2, 3, 4); }),
-                                  image_of(1, 1, [](auto, auto) { return Color(1, 0, 0); }),
-                                  image_of(8, 4, [](auto, auto) { return Color(0, 0, 0); }),
-                                  image_of(8, 4, [](auto, auto) { return Color(-1, -2, -3); })};
+  const std::vector<SkyImage> images{nullptr, image_of(8, 4, [](auto, auto) { return Color(2, 3, 4); }),
+                                     image_of(1, 1, [](auto, auto) { return Color(1, 0, 0); }),
+                                     image_of(8, 4, [](auto, auto) { return Color(0, 0, 0); }),
+                                     image_of(8, 4, [](auto, auto) { return Color(-1, -2, -3); })};
   const std::vector<Color> skies{{1, 1, 1}, {2, 3, 4}, {1, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   for (std::size_t i = 0; i < images.size(); ++i) {
     const EnvironmentLight light(images[i]);
@@ -133,7 +134,7 @@ TEST(EnvironmentLight, EvenImagesHaveNoSuns) {
 }
 
 TEST(EnvironmentLight, ThresholdIsTheFixedPoint) {
-  const Image one = image_with_suns(64, 32, 2048 * 20000.0F, {{30, 9}});
+  const SkyImage one = image_with_suns(64, 32, 2048 * 20000.0F, {{30, 9}});
   const EnvironmentLight light(one);
   expect_fixed_point(*one, light.threshold());
   // The sky's own mean is 1: the sun, 20,000 times the mean of all and nearly all of the light, hardly moves it.
@@ -144,7 +145,7 @@ TEST(EnvironmentLight, ThresholdIsTheFixedPoint) {
 
 TEST(EnvironmentLight, AllButBlackHasNoSky) {
   // Light on less than a quarter of the sphere: no t but 0 is four times a mean of min(L, t).
-  const Image image = image_of(16, 8, [](auto x, auto) { return x < 3 ? Color(1, 1, 1) : Color(0, 0, 0); });
+  const SkyImage image = image_of(16, 8, [](auto x, auto) { return x < 3 ? Color(1, 1, 1) : Color(0, 0, 0); });
   const EnvironmentLight light(image);
   EXPECT_EQ(light.threshold(), 0);
   EXPECT_EQ(light.sun_share(), 1);
@@ -155,7 +156,7 @@ TEST(EnvironmentLight, AllButBlackHasNoSky) {
 
 TEST(EnvironmentLight, NegativeTexelsCountAsBlack) {
   const auto texel = [](auto x, auto y) { return Color(x == 3 && y == 4 ? 500.0F : (x % 4 == 0 ? -0.25F : 1.0F)); };
-  const Image image = image_of(32, 16, texel);
+  const SkyImage image = image_of(32, 16, texel);
   const EnvironmentLight light(image);
   expect_fixed_point(*image, light.threshold());
   const double positive = mean_of(*image, [](double l) { return l; }), negative = 0.25 * 0.25;
@@ -167,7 +168,7 @@ TEST(EnvironmentLight, NegativeTexelsCountAsBlack) {
 }
 
 TEST(EnvironmentLight, PartsAddUpToTheLookup) {
-  for (const Image& image : {hard_image(), image_with_suns(64, 32, 20000, {{30, 9}})}) {
+  for (const SkyImage& image : {hard_image(), image_with_suns(64, 32, 20000, {{30, 9}})}) {
     const EnvironmentLight light(image);
     for (const Direction& way : random_ways(3000)) {
       const Rgba all = sample(*image, environment_uv(way), 0, {Wrap::repeat, Wrap::clamp});
@@ -181,10 +182,10 @@ TEST(EnvironmentLight, PartsAddUpToTheLookup) {
 }
 
 TEST(EnvironmentLight, DensityIntegratesToOne) {
-  const std::vector<Image> images{hard_image(), image_with_suns(64, 32, 20000, {{30, 9}}),
-                                  image_with_suns(24, 1, 900, {{3, 0}}), image_with_suns(1, 24, 900, {{0, 5}}),
-                                  image_with_suns(16, 8, 5000, {{4, 0}})};
-  for (const Image& image : images) {
+  const std::vector<SkyImage> images{hard_image(), image_with_suns(64, 32, 20000, {{30, 9}}),
+                                     image_with_suns(24, 1, 900, {{3, 0}}), image_with_suns(1, 24, 900, {{0, 5}}),
+                                     image_with_suns(16, 8, 5000, {{4, 0}})};
+  for (const SkyImage& image : images) {
     const EnvironmentLight light(image);
     ASSERT_TRUE(light.has_suns());
     EXPECT_NEAR(integral(*image, 20, [&](auto& way) { return static_cast<double>(light.density(way)); }), 1, 2e-3);
@@ -192,13 +193,13 @@ TEST(EnvironmentLight, DensityIntegratesToOne) {
 }
 
 TEST(EnvironmentLight, SamplesFollowTheirDensity) {
-  const Image image = hard_image();
+  const SkyImage image = hard_image();
   const EnvironmentLight light(image);
   // Shares of 80 x 40 boxes, each a quarter of a texel.
   constexpr std::uint32_t kColumns = 80, kRows = 40, kPoints = 1 << 18, kFine = 8;
   std::vector<double> shares(kColumns * kRows), expected(kColumns * kRows);
   for (std::uint32_t i = 0; i < kPoints; ++i) {
-    const auto sun = light.sample(even_point(i, kPoints));
+    const auto sun = light.sample(hammersley_point(i, kPoints));
     ASSERT_TRUE(sun);
     ASSERT_EQ(sun->density, light.density(sun->way));
     const Uv uv = environment_uv(sun->way);
@@ -216,7 +217,7 @@ TEST(EnvironmentLight, SamplesFollowTheirDensity) {
 }
 
 TEST(EnvironmentLight, SamplesEstimateTheSuns) {
-  for (const Image& image : {hard_image(), image_with_suns(64, 32, 20000, {{30, 9}})}) {
+  for (const SkyImage& image : {hard_image(), image_with_suns(64, 32, 20000, {{30, 9}})}) {
     const EnvironmentLight light(image);
     // Weighted by a lobe, as at a surface.
     const auto value = [&](const Direction& way) {
@@ -225,7 +226,7 @@ TEST(EnvironmentLight, SamplesEstimateTheSuns) {
     constexpr std::uint32_t kPoints = 1 << 14;
     double sum = 0, squares = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i)
-      if (const auto sun = light.sample(even_point(i, kPoints))) {
+      if (const auto sun = light.sample(hammersley_point(i, kPoints))) {
         const double term = value(sun->way) / static_cast<double>(sun->density);
         sum += term / kPoints;
         squares += term * term / kPoints;
@@ -237,7 +238,7 @@ TEST(EnvironmentLight, SamplesEstimateTheSuns) {
 }
 
 TEST(EnvironmentLight, DensityCoversTheSuns) {
-  const Image image = hard_image();
+  const SkyImage image = hard_image();
   const EnvironmentLight light(image);
   const double total = integral(*image, 8, [&](auto& way) { return static_cast<double>(luminance(light.suns(way))); });
   std::vector<Direction> ways = random_ways(20000);
@@ -274,7 +275,7 @@ TEST(EnvironmentLight, RealImages) {
   ASSERT_FALSE(files.empty());
   for (const auto& file : files) {
     const std::string name = file.filename().string();
-    const Image image = decode_pyramid(read_file(file), true, name, "");
+    const SkyImage image = decode_pyramid(read_file(file), true, name, "");
     const EnvironmentLight light(image);
     std::printf("%-22s %4u x %4u  t / mean %5.2f  suns %4.1f %% of the light\n", name.c_str(), image->levels[0].width,
                 image->levels[0].height,
@@ -288,7 +289,7 @@ TEST(EnvironmentLight, RealImages) {
     constexpr std::uint32_t kPoints = 1 << 14;
     double sum = 0;
     for (std::uint32_t i = 0; i < kPoints; ++i)
-      if (const auto sun = light.sample(even_point(i, kPoints)))
+      if (const auto sun = light.sample(hammersley_point(i, kPoints)))
         sum += static_cast<double>(luminance(light.suns(sun->way)) / sun->density) / kPoints;
     EXPECT_NEAR(sum / total, 1, 0.01) << name;
   }

@@ -6,9 +6,6 @@
 #include "pi.h"
 
 namespace relook {
-namespace {
-
-}  // namespace
 
 double schlick_reflectance(double f0, double cosine) { return f0 + (1 - f0) * std::pow(1 - cosine, 5); }
 

@@ -12,8 +12,8 @@
 namespace relook {
 namespace {
 
-const std::filesystem::path kRoot = RELOOK_SOURCE_DIR;
-const std::filesystem::path kAssets = kRoot / ".." / "shared" / "assets";
+const std::filesystem::path kSourceRoot = RELOOK_SOURCE_DIR;
+const std::filesystem::path kAssets = kSourceRoot / ".." / "shared" / "assets";
 
 void write_text(const std::filesystem::path& path, const std::string& text) { std::ofstream(path) << text; }
 
@@ -25,21 +25,21 @@ void run_relook(std::vector<std::string> arguments) {
 
 TEST(Page, table1_on_spheres_in_a_browser) {
   const ScratchFolder folder("page_table1");
-  run_relook({"preprocess", (kRoot / "scenes/spheres/spheres.gltf").string(), "-o", (folder / "cache").string(),
+  run_relook({"preprocess", (kSourceRoot / "scenes/spheres/spheres.gltf").string(), "-o", (folder / "cache").string(),
               "--resolution", "480x270", "--quiet"});
-  run_relook({"replay", (folder / "cache").string(), (kRoot / "journals/table1.json").string(), "-o",
+  run_relook({"replay", (folder / "cache").string(), (kSourceRoot / "journals/table1.json").string(), "-o",
               (folder / "run").string(), "--overlays", "--baseline", "--quiet"});
   use_in_browser("report_page.py", folder / "run", page_expectations(folder / "run", true), folder);
 }
 
 TEST(Page, table3_on_garden_in_a_browser) {
   const ScratchFolder folder("page_table3");
-  const ProgramResult made =
-      run_program({"python3", (kRoot / "scenes/generate.py").string(), "garden", (folder / "garden").string(), "1"});
+  const ProgramResult made = run_program(
+      {"python3", (kSourceRoot / "scenes/generate.py").string(), "garden", (folder / "garden").string(), "1"});
   ASSERT_EQ(made.exit_code, 0) << made.output;
   run_relook({"preprocess", (folder / "garden/garden.gltf").string(), "-o", (folder / "cache").string(), "--resolution",
               "256x256", "--quiet"});
-  run_relook({"replay", (folder / "cache").string(), (kRoot / "journals/table3.json").string(), "-o",
+  run_relook({"replay", (folder / "cache").string(), (kSourceRoot / "journals/table3.json").string(), "-o",
               (folder / "run").string(), "--overlays", "--quiet"});
   use_in_browser("report_page.py", folder / "run", page_expectations(folder / "run", true), folder);
 }
@@ -73,11 +73,12 @@ class HostilePage : public testing::Test {
   /// A run of the spheres with a material, a node and steps of hostile names.
   void SetUp() override {
     const std::string name = "</script><b>x</b><img src=x onerror='window.pwned=1'>&amp;\"";
-    const Bytes bytes = read_file(kRoot / "scenes/spheres/spheres.gltf");
+    const Bytes bytes = read_file(kSourceRoot / "scenes/spheres/spheres.gltf");
     Json scene = parse_json(text_of(bytes), "spheres.gltf");
     for (Json& material : scene["materials"])
       if (material["name"] == "Paint") material["name"] = name;
-    std::filesystem::copy(kRoot / "scenes/spheres", folder_ / "spheres", std::filesystem::copy_options::recursive);
+    std::filesystem::copy(kSourceRoot / "scenes/spheres", folder_ / "spheres",
+                          std::filesystem::copy_options::recursive);
     write_text(folder_ / "spheres/spheres.gltf", scene.dump());
     std::string token = name;
     for (std::size_t at = 0; (at = token.find('/', at)) != std::string::npos; at += 2) token.replace(at, 1, "~1");

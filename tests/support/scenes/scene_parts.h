@@ -8,9 +8,7 @@
 namespace relook {
 
 /// Is it an odd cell of a checkerboard whose cells have so many texels a side?
-inline bool odd_cell(std::uint32_t x, std::uint32_t y, std::uint32_t cell) {
-  return ((x / cell + y / cell) & 1U) != 0;
-}
+inline bool odd_cell(std::uint32_t x, std::uint32_t y, std::uint32_t cell) { return ((x / cell + y / cell) & 1U) != 0; }
 
 inline Rgba second_picture_texel(std::uint32_t x, std::uint32_t y) {
   return odd_cell(x, y, 4) ? Rgba(0.1F, 0.3F, 0.7F, 1) : Rgba(0.9F, 0.8F, 0.3F, 1);
