@@ -25,7 +25,8 @@ constexpr std::string_view kExamples[] = {
 
 constexpr std::string_view kExitCodes =
     "Exit codes: 0 ok, 1 usage, 2 bad input, 3 the cache does not fit, 4 out of memory or disk, 5 damaged cache,\n"
-    "6 I/O error, 10 a comparison or --verify found a difference, 128 + N ended by signal N.\n";
+    "6 I/O error, 10 a comparison or --verify found a difference, 75 another command is at the same steps of a run,\n"
+    "128 + N ended by signal N.\n";
 
 }  // namespace
 

@@ -63,12 +63,12 @@ std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, R
   verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 256));
   verb.add_option("--max-depth", view.sampling.max_depth, "Generations of rays; 6")->check(CLI::Range(1, 16));
   add_integrator(verb, raw, "whitted: lamps without size, sharp shadows; path: every light, soft shadows; whitted");
-  verb.add_option("--diffuse-depth", view.sampling.diffuse_depth, "Of path: bounces off diffuse surfaces, 0: direct light only; 0")
+  verb.add_option("--diffuse-depth", view.sampling.diffuse_depth, "Of path: bounces off diffuse surfaces, 0: they are lit by lights alone; 0")
       ->check(CLI::Range(0, 16));
   verb.add_option("--glossy-depth", view.sampling.glossy_depth, "Of path: bounces off glossy surfaces; 4")
       ->check(CLI::Range(0, 16));
   verb.add_option("--transmission-depth", view.sampling.transmission_depth,
-                  "Of path: bounces through transmissive surfaces; 16")
+                  "Of path: passages through transmissive surfaces, rough or not; 16")
       ->check(CLI::Range(0, 16));
   const std::vector<CLI::Option*> options = verb.get_options();
   return {options.begin() + before, options.end()};

@@ -14,7 +14,7 @@ struct Complex {
 };
 Complex operator*(const Complex& a, const Complex& b) { return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re}; }
 Complex conjugate(const Complex& a) { return {a.re, -a.im}; }
-Complex unit(const Complex& a) {
+Complex unit_complex(const Complex& a) {
   const double scale = 1 / std::sqrt(a.re * a.re + a.im * a.im);
   return {a.re * scale, a.im * scale};
 }
@@ -22,7 +22,7 @@ Complex unit(const Complex& a) {
 /// Its argument is the solid angle of [0, x] x [0, y], signed as x y is: atan(x y / (z r)).
 Complex corner(double x, double y, double z) { return {z * std::sqrt(x * x + y * y + z * z), x * y}; }
 /// Its argument, in (-pi, pi), is that of [0, x] x [y0, y1].
-Complex strip(double x, double y0, double y1, double z) { return unit(corner(x, y1, z) * conjugate(corner(x, y0, z))); }
+Complex strip(double x, double y0, double y1, double z) { return unit_complex(corner(x, y1, z) * conjugate(corner(x, y0, z))); }
 
 }  // namespace
 

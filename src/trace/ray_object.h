@@ -26,8 +26,8 @@ struct RayObject {
   float offset = 0;             // metres along the normal that clear a hit of rounding errors
   bool flipped = false;         // negative determinant: counter-clockwise triangles are back faces
   bool alive = false;
-  bool turns = false;           // likewise, rays through it count as bent or blurred: segments do not stand for them
   bool blurs = false;           // under Integrator::path, what goes through is scattered by a lobe (scene/surface_optics.h)
+  bool turns = false;           // likewise, rays through it count as bent or blurred: segments do not stand for them
   std::uint64_t key = 0;  // orders coincident hits, the same whatever the history of edits
   SurfaceOptics optics;
 };

@@ -22,12 +22,15 @@ enum class AlongSegment : std::uint8_t {
 };
 AlongSegment ray_along(const ColorScene& scene, const TreeBlock& block, const RayNode& node, const LightLink& link) {
   std::uint32_t straight = straight_behind(node.ray.path);
+  bool turns = false;
   for (std::uint32_t f = 0; f < link.filters; ++f) {
     const RayObject& object = scene.object(block.filters[link.first + f].object);
-    if (object.turns) return AlongSegment::turns;
+    if (object.optics.bent) return AlongSegment::turns;
+    turns = turns || object.turns;
     if (passes_by_coverage(*object.material)) ++straight;
   }
-  return straight > kMostStraight ? AlongSegment::ends : AlongSegment::arrives;
+  if (straight > kMostStraight) return AlongSegment::ends;
+  return turns ? AlongSegment::turns : AlongSegment::arrives;
 }
 
 /// Of a lamp without a size: it reaches every lobe.

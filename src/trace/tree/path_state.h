@@ -19,7 +19,7 @@ struct PathState {
   bool is_first = true;       // it is the first lobe's, or none has scattered it yet
   bool is_eye = true;         // nothing has turned it
   bool gathers = false;       // where it ends, emission counts and nothing is scattered
-  bool is_shut = false;       // from a wide lobe, through volumes alone: lights with a size reach that lobe by segments
+  bool is_shut = false;       // from a wide lobe, through what turns rays alone: lights with a size reach it by segments
   bool is_wide = false;       // of a wide lobe whose lights have samples, as long as it runs straight
   bool is_alone = false;      // no sample of a light stands for its way
   bool has_lamps = false;     // by straight segments lamps without size reach what sent it through all that transmits

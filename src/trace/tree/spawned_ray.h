@@ -32,7 +32,7 @@ struct SpawnedRay {
   [[nodiscard]] bool is_same_way(const SpawnedRay& other) const {
     return origin == other.origin && direction == other.direction && goes_on() == other.goes_on() &&
            cone_spread == other.cone_spread && path.alpha_floor == other.path.alpha_floor &&
-           path.gathers == other.path.gathers;
+           path.gathers == other.path.gathers && generation == other.generation;
   }
 };
 
