@@ -156,5 +156,22 @@ TEST(PathLobes, come_and_go_with_other_edits) {
       std::nullopt);
 }
 
+TEST(PathLobes, rays_end_after_as_many_generations_as_in_a_full_render) {
+  // The ray straight through the veil is a generation where blinn-phong's transparency sends it, and none otherwise.
+  const std::string veil = "/materials/Veil/extras/relook/";
+  for (const std::uint32_t depth : {2U, 3U}) {
+    ViewOptions view = path_view(4);
+    view.max_depth = depth;
+    expect_full_renders(
+        lights_scene(28, 21), view,
+        {row("a rough pane", set("/materials/Pane/pbrMetallicRoughness/roughnessFactor", 0.4)),
+         row("glass is rough", set("/materials/Glass/pbrMetallicRoughness/roughnessFactor", 0.4)),
+         row("another model", add(veil + "model", "blinn-phong")), row("transparent", add(veil + "transparency", 0.5)),
+         row("less", set(veil + "transparency", 0.2)), row("not at all", set(veil + "transparency", 0)),
+         row("the first model", set(veil + "model", "metallic-roughness"))},
+        std::nullopt);
+  }
+}
+
 }  // namespace
 }  // namespace relook
