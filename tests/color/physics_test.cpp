@@ -23,7 +23,7 @@ TEST(Physics, PointLightOverALambertPlaneFallsWithTheSquareOfTheDistance) {
 TEST(Physics, DirectionalLightOverALambertPlaneFollowsTheCosine) {
   for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
     SceneBuilder scene;
-    scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1)))}});
+    scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1.0)))}});
     const double angle = degrees * kPi / 180;
     scene.light("Sun", {{"type", "directional"}, {"intensity", 2}},
                 {{"rotation", shining({std::sin(angle), -std::cos(angle), 0})}});
@@ -38,7 +38,7 @@ TEST(Physics, SpotConeFadesBetweenInnerAndOuterAngle) {
   const double inner = 0.2, outer = 0.6;
   for (const double a : {0.0, 0.15, 0.3, 0.45, 0.59, 0.7}) {
     SceneBuilder scene;
-    scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1)))}});
+    scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1.0)))}});
     scene.light("Spot",
                 {{"type", "spot"}, {"intensity", 10}, {"spot", {{"innerConeAngle", inner}, {"outerConeAngle", outer}}}},
                 {{"translation", {0, 2, 0}}, {"rotation", shining({0, -1, 0})}});
@@ -53,7 +53,7 @@ TEST(Physics, RangeWindowEndsTheLightSmoothly) {
   // window = (1 - (d / range)^4)+ on top of the inverse square, d = 2.
   for (const double range : {1.5, 2.0, 2.5, 4.0, 100.0}) {
     SceneBuilder scene;
-    scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1)))}});
+    scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1.0)))}});
     scene.light("Lamp", {{"type", "point"}, {"intensity", 10}, {"range", range}}, {{"translation", {0, 2, 0}}});
     const double radiance = 10 / kPi / 4 * std::max(0.0, 1 - std::pow(2 / range, 4));
     expect_near(seen(scene, Point(0, 3, 1), Point(0, 0, 0)), radiance, radiance, radiance);
@@ -62,7 +62,7 @@ TEST(Physics, RangeWindowEndsTheLightSmoothly) {
 
 /// A textured box that glows by itself, over (or, mirrored, under) the plane y = 0.
 void add_box(SceneBuilder& scene, bool mirrored) {
-  Json glow = lambert(0);
+  Json glow = lambert(0.0);
   const int image = scene.image("Picture", single_level_image(8, [](std::uint32_t x, std::uint32_t y) {
                                   return Rgba(static_cast<float>(x) / 8, static_cast<float>(y) / 8, 0.5F, 1);
                                 }));

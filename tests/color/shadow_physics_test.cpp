@@ -12,7 +12,7 @@ namespace {
 /// A Lambert plane under a vertical sun of pi lux: radiance 1 where nothing stands between.
 SceneBuilder sunlit_plane() {
   SceneBuilder scene;
-  scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1)))}});
+  scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1.0)))}});
   scene.light("Sun", {{"type", "directional"}, {"intensity", kPi}}, {{"rotation", shining({0, -1, 0})}});
   return scene;
 }
@@ -95,7 +95,7 @@ double furnace(const Json& material, double view_degrees) {
 }
 
 TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
-  Json dielectric = lambert(1), coated = lambert(1), velvet = lambert(1), rough_metal = metal(0.5), rougher = metal(1),
+  Json dielectric = lambert(1.0), coated = lambert(1.0), velvet = lambert(1.0), rough_metal = metal(0.5), rougher = metal(1),
        brushed = metal(0.5);
   dielectric["extensions"].erase("KHR_materials_specular");
   dielectric["pbrMetallicRoughness"]["roughnessFactor"] = 0.5;
@@ -104,7 +104,7 @@ TEST(Physics, WhiteFurnaceReturnsNoMoreThanItSends) {
   brushed["extensions"]["KHR_materials_anisotropy"] = {{"anisotropyStrength", 0.6}, {"anisotropyRotation", 0.5}};
   for (const double view : {5.0, 45.0}) {
     SCOPED_TRACE(view);
-    EXPECT_NEAR(furnace(lambert(1), view), 1, 0.005);  // all of it comes back: the integral of cos / pi
+    EXPECT_NEAR(furnace(lambert(1.0), view), 1, 0.005);  // all of it comes back: the integral of cos / pi
     for (const Json& material : {dielectric, coated, velvet, rough_metal, rougher, brushed})
       EXPECT_LE(furnace(material, view), 1.015);
     for (const Json& material : {dielectric, coated, velvet}) EXPECT_GE(furnace(material, view), 0.85);
@@ -126,7 +126,7 @@ TEST(Physics, SurfaceDoesNotShadowItselfWhereCoordinatesVanish) {
 
 TEST(Physics, AmbientLightOnWhiteIsTheAmbientLight) {
   SceneBuilder scene;
-  scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1)))}});
+  scene.node("Plane", {{"mesh", scene.mesh("Plane", plane_mesh(10, 1), scene.material("Dull", lambert(1.0)))}});
   scene.ambient(Color(0.25F, 0.5F, 0.75F));
   expect_near(seen(scene, Point(0, 3, 1), Point(0, 0, 0)), 0.25, 0.5, 0.75);
 }
