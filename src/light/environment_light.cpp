@@ -191,9 +191,11 @@ std::optional<EnvironmentLight::Sun> EnvironmentLight::sample(Uv u) const {
   const double top = cell.row == 0 ? 0.0 : cell.row - 0.5, tall = cell.row == 0 || cell.row == height_ ? 0.5 : 1.0;
   const double along = (cell.column - 0.5 + x) / width_;
   Sun sun{environment_way(along < 0 ? along + 1 : along, (top + y * tall) / height_), 0};
-  // As density() has it for this direction, but for the rounding of the way to texels and back.
+  // As density() has it for this direction, but for the rounding of the way to texels and back. Next to a pole the way
+  // does not tell x any more.
   const auto value = static_cast<float>((a + (c - a) * y) * (1 - x) + (b + (d - b) * y) * x);
-  sun.density = value / clamped_sine(sun.way);
+  const float sine = clamped_sine(sun.way);
+  sun.density = sine > kLeastSine ? value / sine : density(sun.way);
   if (!(sun.density > 0)) return std::nullopt;
   return sun;
 }

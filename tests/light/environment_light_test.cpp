@@ -201,7 +201,8 @@ TEST(EnvironmentLight, SamplesFollowTheirDensity) {
   for (std::uint32_t i = 0; i < kPoints; ++i) {
     const auto sun = light.sample(hammersley_point(i, kPoints));
     ASSERT_TRUE(sun);
-    ASSERT_EQ(sun->density, light.density(sun->way));
+    const float density = light.density(sun->way);  // of a direction in floats, whose polar angle next to 0 is coarse
+    ASSERT_NEAR(sun->density, density, 1e-3F * std::max(density, 1.0F) + 0.02F * density * std::fabs(sun->way.y)) << i;
     const Uv uv = environment_uv(sun->way);
     const auto x = std::min(static_cast<std::uint32_t>(uv.x * kColumns), kColumns - 1);
     shares[std::min(static_cast<std::uint32_t>(uv.y * kRows), kRows - 1) * kColumns + x] += 1.0 / kPoints;
