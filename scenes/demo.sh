@@ -17,7 +17,7 @@ if [ ! -e build/scenes/product/product.gltf ]; then
   python3 scenes/generate.py product build/scenes/product
 fi
 "$relook" preprocess build/scenes/product/product.gltf -o "$out/product.cache" --integrator path \
-  --resolution 640x360 --samples 64
+  --resolution 480x270 --samples 32
 "$relook" replay "$out/product.cache" journals/product-lights.json -o "$out/product" --baseline
 
 "$relook" preprocess scenes/spheres/spheres.gltf -o "$out/spheres.cache" --resolution 960x540 --samples 4
