@@ -54,7 +54,11 @@ double rough_transmittance(double nv, double roughness, double eta) {
   return sum / (double{kTilts} * kTurns);
 }
 
-double power_albedo(double nv, double shininess) {
+namespace {
+
+/// The integral of value(nl, nh2) times nl over directions of a hemisphere; nh2: the squared cosine of the half vector.
+template <class Value>
+double reflected_share(double nv, const Value& value) {
   constexpr int kHeights = 2048, kTurns = 256;
   const double vx = std::sqrt(1 - nv * nv);
   double sum = 0;
@@ -63,26 +67,25 @@ double power_albedo(double nv, double shininess) {
     for (int j = 0; j < kTurns; ++j) {
       const double turn = 2 * kPi * (j + 0.5) / kTurns;
       const double x = sine * std::cos(turn) + vx, y = sine * std::sin(turn), z = nl + nv;
-      sum += (shininess + 8) / (8 * kPi) * std::pow(z / std::sqrt(x * x + y * y + z * z), shininess) * nl;
+      sum += value(nl, z * z / (x * x + y * y + z * z)) * nl;
     }
   }
   return sum * 2 * kPi / (double{kHeights} * kTurns);
 }
 
+}  // namespace
+
+double power_albedo(double nv, double shininess) {
+  return reflected_share(nv, [&](double /*nl*/, double nh2) {
+    return (shininess + 8) / (8 * kPi) * std::pow(nh2, 0.5 * shininess);
+  });
+}
+
 double cloth_albedo(double nv, double roughness) {
-  constexpr int kHeights = 2048, kTurns = 256;
-  const double alpha = std::pow(std::max(roughness, 0.07), 2), vx = std::sqrt(1 - nv * nv);
-  double sum = 0;
-  for (int i = 0; i < kHeights; ++i) {
-    const double nl = (i + 0.5) / kHeights, sine = std::sqrt(1 - nl * nl);
-    for (int j = 0; j < kTurns; ++j) {
-      const double turn = 2 * kPi * (j + 0.5) / kTurns;
-      const double x = sine * std::cos(turn) + vx, y = sine * std::sin(turn), z = nl + nv;
-      const double nh2 = z * z / (x * x + y * y + z * z);
-      sum += (2 + 1 / alpha) * std::pow(1 - nh2, 0.5 / alpha) / (2 * kPi) / (4 * (nl + nv - nl * nv)) * nl;
-    }
-  }
-  return sum * 2 * kPi / (double{kHeights} * kTurns);
+  const double alpha = std::pow(std::max(roughness, 0.07), 2);
+  return reflected_share(nv, [&](double nl, double nh2) {
+    return (2 + 1 / alpha) * std::pow(1 - nh2, 0.5 / alpha) / (2 * kPi) / (4 * (nl + nv - nl * nv));
+  });
 }
 
 }  // namespace relook

@@ -189,16 +189,16 @@ TEST(LobeSamples, ViewsFromBelowAreSampledAtGrazingAngles) {
         }
 }
 
-TEST(LobeSamples, DiffuseDirectionsGoByTheirCosine) {
+/// Are directions even over the hemisphere where height(z) is even over [0, 1]? `direction`: of a point of the square.
+template <class Sample, class Height>
+void expect_even(Points points, const Sample& direction, const Height& height) {
   constexpr int kSamples = 100000, kSide = 8;
   std::array<int, kSide * kSide> found{};
-  Points points(3);
   for (int i = 0; i < kSamples; ++i) {
-    const Direction way = cosine_direction(points.next());
+    const Direction way = direction(points.next());
     ASSERT_NEAR(way.dot(way), 1, 1e-5F);
     const double around = std::atan2(double{way.y}, double{way.x}) / (2 * kPi) + 0.5;
-    // The squared cosine is spread evenly.
-    const int row = std::min(static_cast<int>(way.z * way.z * kSide), kSide - 1);
+    const int row = std::min(static_cast<int>(height(way.z) * kSide), kSide - 1);
     const int column = std::min(static_cast<int>(around * kSide), kSide - 1);
     ++found[static_cast<std::size_t>(row * kSide + column)];
   }
@@ -206,6 +206,11 @@ TEST(LobeSamples, DiffuseDirectionsGoByTheirCosine) {
   double chi2 = 0;
   for (const int count : found) chi2 += (count - expected) * (count - expected) / expected;
   EXPECT_LT(chi2, kSide * kSide + 5 * std::sqrt(2.0 * kSide * kSide));
+}
+
+TEST(LobeSamples, DiffuseDirectionsGoByTheirCosine) {
+  // The squared cosine is spread evenly.
+  expect_even(Points(3), [](Uv u) { return cosine_direction(u); }, [](float z) { return z * z; });
   EXPECT_NEAR(cosine_density(0.5F), 0.5 / kPi, 1e-6);
   EXPECT_EQ(cosine_density(-0.5F), 0);
   for (const float x : {0.0F, 0.5F, 1.0F})
@@ -229,22 +234,8 @@ TEST(LobeSamples, NeighboursInTheSquareStayNeighbours) {
 }
 
 TEST(LobeSamples, EvenDirectionsCoverTheHemisphere) {
-  // Of directions that are even over the hemisphere the height is even over [0, 1].
-  constexpr int kSamples = 100000, kSide = 8;
-  std::array<int, kSide * kSide> found{};
-  Points points(4);
-  for (int i = 0; i < kSamples; ++i) {
-    const Direction way = even_direction(points.next());
-    ASSERT_NEAR(way.dot(way), 1, 1e-5F);
-    const double around = std::atan2(double{way.y}, double{way.x}) / (2 * kPi) + 0.5;
-    const int row = std::min(static_cast<int>(way.z * kSide), kSide - 1);
-    const int column = std::min(static_cast<int>(around * kSide), kSide - 1);
-    ++found[static_cast<std::size_t>(row * kSide + column)];
-  }
-  const double expected = double{kSamples} / (kSide * kSide);
-  double chi2 = 0;
-  for (const int count : found) chi2 += (count - expected) * (count - expected) / expected;
-  EXPECT_LT(chi2, kSide * kSide + 5 * std::sqrt(2.0 * kSide * kSide));
+  // The height is even over [0, 1].
+  expect_even(Points(4), [](Uv u) { return even_direction(u); }, [](float z) { return z; });
 }
 
 TEST(LobeSamples, SheenReflectsItsAlbedo) {

@@ -295,7 +295,7 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
     ++ray->path.transmission;
     ray->path.gathers = gathers || ray->path.transmission > rule.transmission_depth;
   };
-  const CoverageChoice coverage = coverage_choice(node, object);
+  const CoverageChoice& coverage = node.coverage;
   if (optics.transparent && coverage.goes_on()) bent(add_straight_ray(spawner, node, object, is_deep));
   if (!coverage.sees_surface()) return;
   const Interface interface(node, object);

@@ -349,21 +349,23 @@ class Updater {
     if (now.cut != node.flags.cut()) note(TreeChange::all);
     const bool respawns = (change_.flags(node.object) & RayChange::respawns) != 0;
     Spawned before;
-    if (respawns)
-      spawn(grower_.block().nodes[index], change_.value_before(node.object), grower_.grow().rule(), before);
+    if (respawns) {
+      const RayObject& then = change_.value_before(node.object);
+      RayNode as_before = grower_.block().nodes[index];
+      as_before.coverage = coverage_choice(as_before, then);
+      spawn(as_before, then, grower_.grow().rule(), before);
+    }
     for (std::size_t b = 0; b < kBranches; ++b) {
       const auto branch = static_cast<Branch>(b);
       const bool is_stored = node.has_child(branch), is_now = now.branches().has(branch);
-      if (is_stored != is_now) note(TreeChange::all);
-      if (is_stored && !is_now) counters_.culled.dropped += skip_tree(stored_);
+      const bool goes_as_before =
+          is_stored && is_now &&
+          (!respawns || (before.branches().has(branch) && before.ray(branch).is_same_way(now.ray(branch))));
+      if (!goes_as_before && (is_stored || is_now)) note(TreeChange::all);
+      if (is_stored && !goes_as_before) counters_.culled.dropped += skip_tree(stored_);
       if (!is_now) continue;
       const SpawnedRay& ray = now.ray(branch);
-      const bool same_ray = !respawns || (before.branches().has(branch) && before.ray(branch).is_same_way(ray));
-      const bool goes_as_before = is_stored && same_ray;
-      if (!goes_as_before) note(TreeChange::all);
-      if (is_stored && !goes_as_before) counters_.culled.dropped += skip_tree(stored_);
-      const std::uint32_t child =
-          goes_as_before ? update(ray, index, history.child(branch)) : trace(ray, index);
+      const std::uint32_t child = goes_as_before ? update(ray, index, history.child(branch)) : trace(ray, index);
       grower_.block().nodes[index].child[b] = child;
     }
   }
