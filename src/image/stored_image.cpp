@@ -44,6 +44,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
     : image_(std::move(image)),
       layers_(image_.light_sums.size()),
       has_been_composed_(image_.light_sums.size(), 0),
+      kept_rays_(image_.light_sums.size()),
       residency_(residency),
       lights_(std::move(lights)),
       classes_(options.atoms > 0),
@@ -62,7 +63,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
   regions_.build_groups(image_, class_of());
   if (residency_.is_watched()) {
     add_pieces();
-    add_layers();
+    add_derived();
   }
 }
 

@@ -17,6 +17,7 @@
 #include "image/path_index.h"
 #include "image/regions.h"
 #include "image/tile_layers.h"
+#include "trace/update/kept_rays.h"
 
 namespace relook {
 
@@ -87,6 +88,10 @@ class StoredImage {
   /// Works the pixels of a tile out from its sums, adds those that differ to `changed`. `colors`: of all sums. Keeps the
   /// tile's layers from the second time on, if they are worth their room.
   void refresh_from_sums(std::size_t tile, std::span<const LightColor> colors, TileMask& changed);
+  /// What is kept of a tile's rays; empty: nothing. Requires: PieceKind::kept_rays is leased.
+  [[nodiscard]] const TileRays& kept_rays(std::size_t tile) const { return kept_rays_[tile]; }
+  /// Empty: forgets them. Not while they are leased.
+  void keep_rays(std::size_t tile, TileRays rays);
 
  private:
   [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }
@@ -94,7 +99,7 @@ class StoredImage {
     return [this](PathId path) { return classes_.of(path); };
   }
   void add_pieces();
-  void add_layers();
+  void add_derived();
   [[nodiscard]] TileLayers::Planes planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
                                           TileLayers::Working& working);
   void note_layers(std::size_t tile);
@@ -116,6 +121,7 @@ class StoredImage {
   std::vector<TileLayers> layers_;              // by tile; of paths
   std::vector<std::uint8_t> has_been_composed_;  // by tile: from the sums as they are
   Pool<LayerWork> layer_work_;
+  std::vector<TileRays> kept_rays_;              // by tile; of paths
   Residency& residency_;
   std::vector<LightId> lights_;
   PathIndex index_;

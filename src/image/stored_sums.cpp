@@ -1,4 +1,5 @@
-// Sums of light of a stored image, tile by tile, and the pixels that they give.
+// What a stored image keeps of the path integrator beside trees, tile by tile: sums of light, the pixels that they give,
+// and rays.
 #include <memory>
 #include <utility>
 
@@ -6,11 +7,31 @@
 
 namespace relook {
 
-void StoredImage::add_layers() {
+namespace {
+
+template <class Piece>
+PieceHandler handler_of_derived(std::vector<Piece>& pieces) {
   PieceHandler handler;
-  handler.drop = [tiles = layers_.data()](std::size_t tile) { tiles[tile] = TileLayers(); };
+  handler.drop = [tiles = pieces.data()](std::size_t tile) { tiles[tile] = Piece(); };
   handler.may_be_missing = handler.is_derived = true;
-  residency_.add_kind(PieceKind::light_layers, layers_.size(), std::move(handler));
+  return handler;
+}
+
+}  // namespace
+
+void StoredImage::add_derived() {
+  residency_.add_kind(PieceKind::light_layers, layers_.size(), handler_of_derived(layers_));
+  residency_.add_kind(PieceKind::kept_rays, kept_rays_.size(), handler_of_derived(kept_rays_));
+}
+
+void StoredImage::keep_rays(std::size_t tile, TileRays rays) {
+  constexpr double kSecondsPerRay = 1e-6;  // to expand it again
+  kept_rays_[tile] = TileRays();
+  if (residency_.is_watched()) residency_.forget(PieceKind::kept_rays, tile);
+  if (rays.empty() || !residency_.is_worth_room(PieceKind::kept_rays, tile, rays.bytes())) return;
+  kept_rays_[tile] = std::move(rays);
+  residency_.set(PieceKind::kept_rays, tile, kept_rays_[tile].bytes(),
+                 static_cast<double>(kept_rays_[tile].rays.size()) * kSecondsPerRay);
 }
 
 void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {

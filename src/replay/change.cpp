@@ -64,7 +64,8 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
   }
   std::ranges::sort(change.colors.parameters.lights);
   change.rays.old_lights = old_lights;
-  change.rays.lights_changed = scene.light_order != old_lights || !moved.empty();
+  change.rays.keeps_places = scene.light_order == old_lights;
+  change.rays.lights_changed = !change.rays.keeps_places || !moved.empty();
   std::unordered_map<LightId, std::uint32_t> kept;  // by place in the old order
   for (std::uint32_t i = 0; i < old_lights.size(); ++i) kept.emplace(old_lights[i], i);
   for (const LightId light : moved) kept.erase(light);
@@ -72,6 +73,7 @@ void find_light_changes(const Scene& scene, const SceneDelta& delta, const std::
     const auto old = kept.find(light);
     change.rays.old_light_index.push_back(old != kept.end() ? old->second : kNoNode);
   }
+  change.rays.find_lost_lights();
 }
 
 }  // namespace

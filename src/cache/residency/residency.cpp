@@ -18,6 +18,8 @@ std::string_view kind_name(PieceKind kind) {
       return "light_sums";
     case PieceKind::light_layers:
       return "light_layers";
+    case PieceKind::kept_rays:
+      return "kept_rays";
     case PieceKind::tunnels:
       return "tunnels";
   }

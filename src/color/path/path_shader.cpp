@@ -53,10 +53,17 @@ struct PathShader::Impl {
     sums = &tile;
     is_added = sign == TermSign::add;
     shade_filters();
-    find_weights();
+    if (wanted.weights.empty()) {
+      find_weights();
+    } else {
+      weights.assign(wanted.weights.begin(), wanted.weights.end());
+      columns.resize(weights.size());
+      open_shares.assign(weights.size(), 0);
+    }
     add_own_terms();
     add_light_terms();
   }
+  [[nodiscard]] std::span<const Color> found_weights() const { return weights; }
 
  private:
   [[nodiscard]] bool is_whole(const RayNode& node) const {
@@ -338,5 +345,7 @@ void PathShader::shade(const TreeBlock& block, std::uint32_t samples, TermSign s
                        const Wanted& wanted) {
   impl_->shade(block, samples, sign, sums, wanted);
 }
+
+std::span<const Color> PathShader::weights() const { return impl_->found_weights(); }
 
 }  // namespace relook

@@ -23,9 +23,13 @@ class PathShader {
     std::span<const std::uint8_t> sums;    // by sum, of those that are no light's; empty: all of everything
     std::span<const std::uint8_t> lights;  // by place in the light order
     std::span<const std::uint8_t> whole;   // by sample of the tile; empty: none
+    /// By node: as weights() was. Of surfaces' own terms and of emission none is then wanted. Empty: to be found.
+    std::span<const Color> weights;
   };
   /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel.
   void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums, const Wanted& wanted = {});
+  /// By node of the block that was shaded last: what of unit light there comes to the eye.
+  [[nodiscard]] std::span<const Color> weights() const;
 
  private:
   struct Impl;

@@ -35,7 +35,9 @@ void match_lights(const RayScene& before, const std::vector<LightId>& order_befo
                        before.light(static_cast<std::size_t>(old)).same_place(after.light(place));
     rays.old_light_index.push_back(stays ? static_cast<std::uint32_t>(old) : kNoNode);
   }
-  rays.lights_changed = order_before != after.light_order() ||
+  rays.find_lost_lights();
+  rays.keeps_places = order_before == after.light_order();
+  rays.lights_changed = !rays.keeps_places ||
                         std::ranges::find(rays.old_light_index, kNoNode) != rays.old_light_index.end();
 }
 

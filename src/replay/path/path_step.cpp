@@ -32,12 +32,15 @@ class PathSelection {
 
   void select(PathPass& pass) const {
     const std::size_t paths = stored_.image().paths.size();
-    const bool updates_all = change_.step.touches_segments() || change_.step.rays.lights_changed;
-    pass.update_path.assign(paths, updates_all ? 1 : 0);
+    pass.updates_all = change_.step.touches_segments() || change_.step.rays.lights_changed;
+    pass.ray_use = ray_use();
+    pass.update_path.assign(paths, pass.updates_all ? 1 : 0);
     pass.shade_path.assign(paths, 0);
     const std::vector<std::uint8_t>& flags = change_.step.rays.objects;
+    pass.named_path.assign(paths, 0);
     for (std::uint32_t object = 0; object < flags.size(); ++object)
-      if (flags[object] != 0) flag(ObjectId(object), pass.update_path);
+      if (flags[object] != 0) flag(ObjectId(object), pass.named_path);
+    for (std::size_t path = 0; path < paths; ++path) pass.update_path[path] |= pass.named_path[path];
     for (const ObjectId object : change_.step.colors.reassigned) flag(object, pass.shade_path);
     select_relit(pass);
     if (change_.shaded.empty()) return;
@@ -47,6 +50,22 @@ class PathSelection {
   }
 
  private:
+  [[nodiscard]] RayUse ray_use() const {
+    const bool relights = change_.any_taken() || change_.any_given() || change_.any_afresh();
+    const StepChange& step = change_.step;
+    if (step.touches_rays() && !step.rays.lights_changed) return relights ? RayUse::none : RayUse::tests;
+    const bool only_lights = relights && step.rays.only_lights() && !change_.any_taken() && !gives_emission() &&
+                             change_.shaded.empty() && step.colors.reassigned.empty();
+    if (only_lights) return RayUse::lights;
+    return step.touches_rays() ? RayUse::none : RayUse::colors;
+  }
+  /// What shines at a hit has a column of its own there.
+  [[nodiscard]] bool gives_emission() const {
+    for (std::size_t place = 0; place < change_.given.size(); ++place)
+      if (change_.given[place] != 0 && scene_.light(scene_.light_order[place]).kind == LightKind::emission) return true;
+    return false;
+  }
+
   void flag(ObjectId object, std::vector<std::uint8_t>& paths) const {
     for (const PathId path : stored_.index().paths_of(object)) paths[path.index()] = 1;
   }
@@ -104,7 +123,8 @@ class PathUpdate {
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
     Pool<PathShader> shaders_before, shaders_after;
     PathPass pass{change_,        stored_.image(), programs_before, programs_after, grow_before, grow_after,
-                  shaders_before, shaders_after,   {},              {},             {}};
+                  shaders_before, shaders_after,   {},              {},             {},
+                  {}};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
@@ -115,7 +135,7 @@ class PathUpdate {
       count(tile, result.counters);
       fresh.push_back(std::move(tile.fresh));
     }
-    if (change_.step.touches_rays()) stored_.keep_paths(fresh, grow_after, change_.step.rays.lights_changed);
+    if (change_.step.touches_rays()) stored_.keep_paths(fresh, grow_after, !change_.step.rays.keeps_places);
     return changed;
   }
 
@@ -129,9 +149,13 @@ class PathUpdate {
     const auto trees = parts_.residency.use(PieceKind::ray_trees, tile);
     {
       const auto sums = parts_.residency.use(PieceKind::light_sums, tile);
-      result = has_hits(stored_.image().trees[tile]) ? update_path_tile(pass, tile, stored_.image().light_sums[tile])
-                                                     : trace_path_tile(pass, tile);
+      const auto rays = parts_.residency.use(PieceKind::kept_rays, tile);
+      result = has_hits(stored_.image().trees[tile])
+                   ? update_path_tile(pass, tile, stored_.image().light_sums[tile], stored_.kept_rays(tile))
+                   : trace_path_tile(pass, tile);
     }
+    if (result.rays) stored_.keep_rays(tile, std::move(*result.rays));
+    result.rays.reset();
     stored_.keep_hits(result.fresh);
     if (result.has_changed) stored_.keep_sums(tile, std::move(result.sums));
     result.sums = {};

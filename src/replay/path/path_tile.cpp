@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "image/sampling.h"
+#include "replay/path/ray_recorder.h"
 #include "trace/tree/pack.h"
 
 namespace relook {
@@ -13,7 +14,20 @@ namespace {
 struct Batch {
   TreeBlock block;
   std::vector<std::uint32_t> roots;
+  std::vector<std::uint8_t> is_recorded;  // by root: its weights are to be kept
+  std::vector<Color> weights;             // by node, as kept; empty: to be found
+
+  void clear() {
+    block.clear();
+    roots.clear();
+    is_recorded.clear();
+    weights.clear();
+  }
 };
+
+bool is_usable(const TileRays& rays, RayUse use) {
+  return use != RayUse::none && !rays.empty() && (use != RayUse::lights || rays.has_weights());
+}
 
 Pool<PathShader>::Loan shader_of(const TilePrograms& programs, Pool<PathShader>& shaders) {
   return shaders.take(
@@ -22,8 +36,12 @@ Pool<PathShader>::Loan shader_of(const TilePrograms& programs, Pool<PathShader>&
 
 class PathTileUpdater {
  public:
-  PathTileUpdater(const PathPass& pass, std::size_t tile)
+  /// `rays`: as kept; empty: nothing.
+  PathTileUpdater(const PathPass& pass, std::size_t tile, const TileRays& rays)
       : pass_(pass),
+        rays_(rays),
+        use_(is_usable(rays, pass.ray_use) ? pass.ray_use : RayUse::none),
+        recorder_(rays, pass.updates_all && use_ == RayUse::none),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         samples_(pass.image.view.samples),
@@ -34,13 +52,17 @@ class PathTileUpdater {
         new_terms_(pass.after.places().count, rect_.pixels()),
         no_sums_(pass.before.places().count, 0),
         adds_(pass.change.any_afresh() || pass.change.any_given()),
-        takes_(pass.change.any_taken()) {
+        takes_(pass.change.any_taken()),
+        is_shared_(!pass.change.step.touches_rays()),
+        takes_or_shades_(takes_ || !pass.change.shaded.empty() || !pass.change.step.colors.reassigned.empty()),
+        misses_are_dark_(are_misses_dark()) {
     result_.fresh.tile = tile;
   }
 
   PathTileResult update(const PackedSums& sums) {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
+    if (recorder_.has_news()) result_.rays = recorder_.take();
     const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
                               !std::ranges::is_sorted(pass_.change.old_of_new);
     if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
@@ -59,6 +81,7 @@ class PathTileUpdater {
   }
 
   PathTileResult trace() {
+    result_.rays = TileRays();
     std::vector<SpawnedRay> rays;
     const auto count = static_cast<std::uint32_t>(trees_.paths.size());
     ChunkSize chunk(pass_.grow_after.layout().lights);
@@ -84,55 +107,136 @@ class PathTileUpdater {
     const bool relights = (adds_ || takes_) && (pass_.relight_path.empty() || pass_.relight_path[path.index()] != 0);
     if (!updates && !shades && !relights) return;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
-    const std::span<const std::uint32_t> words = pass_.image.paths.words(path);
-    const StoredTree stored{PathCursor(words, {pass_.change.step.rays.old_lights.size(), 0}), trees_.hits_of(sample)};
+    StoredTree stored{PathCursor(pass_.image.paths.words(path), {pass_.change.step.rays.old_lights.size(), 0}),
+                      trees_.hits_of(sample)};
+    const bool is_named = !pass_.named_path.empty() && pass_.named_path[path.index()] != 0;
+    if (use_ == RayUse::lights && is_dark(stored.cursor)) return;
+    if (use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named) stored.kept = rays_.rays.data() + rays_.first[sample];
+    if (use_ == RayUse::tests && stored.kept != nullptr) {
+      if (stays(primary, sample, stored)) return;
+      stored.kept = nullptr;
+    }
     const TreeBlock::Mark mark = changed_.block.mark();
     TreeChange what = TreeChange::none;
     std::uint32_t root = 0;
-    if (updates)
+    if (updates || stored.kept != nullptr)
       root = update_tree(pass_.grow_after, pass_.change.step.rays, nullptr, primary, sample, stored, changed_.block,
                          result_.counters, what);
     else
       root = expand_tree(pass_.grow_after, primary, sample, stored, changed_.block, result_.counters);
-    if (what != TreeChange::none || pass_.change.step.rays.lights_changed) pack_sample(changed_, root, sample);
+    if (what != TreeChange::none || !pass_.change.step.rays.keeps_places) pack_sample(changed_, root, sample);
     const bool is_whole = shades || what == TreeChange::all;
+    const bool is_recorded = recorder_.is_on() && (recorder_.records_all() || is_whole || is_named);
+    if (is_recorded) recorder_.record(changed_.block, root, sample);
     const bool adds = is_whole || (relights && adds_), takes = is_whole || (relights && takes_);
-    if (adds)
+    if (adds || (takes && is_shared_)) {
       changed_.roots.push_back(root);
-    else
+      changed_.is_recorded.push_back(is_recorded ? 1 : 0);
+      if (stored.kept != nullptr) complete_kept(root, sample);
+    } else {
       changed_.block.rewind(mark);
+    }
     if (!adds && !takes) return;
     ++result_.samples;
     whole_[sample] = is_whole ? 1 : 0;
-    if (takes)
+    if (takes && !is_shared_)
       old_.roots.push_back(expand_tree(pass_.grow_before, primary, sample, stored, old_.block, result_.counters));
     if (ChunkSize::is_full(changed_.block, changed_.roots.size()) || ChunkSize::is_full(old_.block, old_.roots.size()))
       flush();
   }
 
+  /// Does the tree stay as it is? Told along its kept rays.
+  bool stays(const SpawnedRay& primary, std::uint32_t sample, const StoredTree& stored) {
+    const TreeBlock::Mark mark = changed_.block.mark();
+    GrowCounters counters;
+    TreeChange what = TreeChange::none;
+    update_tree(pass_.grow_after, pass_.change.step.rays, nullptr, primary, sample, stored, changed_.block, counters,
+                what);
+    changed_.block.rewind(mark);
+    if (what == TreeChange::all) return false;
+    result_.counters += counters;
+    return true;
+  }
+
+  /// Is a sample whose ray from the eye meets nothing none of those that lights bring terms to?
+  [[nodiscard]] bool is_dark(PathCursor cursor) const { return misses_are_dark_ && cursor.next().is_miss(); }
+  [[nodiscard]] bool are_misses_dark() const {
+    const auto& lights = pass_.grow_after.scene.light_order();
+    for (std::size_t place = 0; place < pass_.change.given.size(); ++place) {
+      if (pass_.change.given[place] == 0) continue;
+      const Light& light = pass_.after.scene().scene().light(lights[place]);
+      if (light.visible || !traits_of(light.kind).in_document) return false;
+    }
+    const SumPlaces& sums = pass_.after.places();
+    return pass_.change.afresh[sums.sky] == 0 && pass_.change.afresh[sums.background] == 0 &&
+           pass_.change.step.rays.keeps_places;
+  }
+
+  /// Of a tree of kept rays that is to be shaded: weights, and the lobes of hits that lights reach.
+  void complete_kept(std::uint32_t root, std::uint32_t sample) {
+    if (use_ == RayUse::lights) {
+      changed_.weights.emplace_back(1, 1, 1);
+      const auto weights = rays_.weights_of(sample);
+      changed_.weights.insert(changed_.weights.end(), weights.begin(), weights.end());
+    }
+    TreeBlock& block = changed_.block;
+    for (std::size_t i = root; i < block.nodes.size(); ++i) {
+      if (!is_lit(block.nodes[i])) continue;
+      const VertexLobes lobes = find_lobes(block.nodes[i], pass_.grow_after.scene.object(block.nodes[i].object));
+      if (!lobes.any()) continue;
+      block.nodes[i].lobes = static_cast<std::uint32_t>(block.lobes.size());
+      block.lobes.push_back(lobes);
+    }
+  }
+  /// By a light that is looked at.
+  [[nodiscard]] bool is_lit(const RayNode& node) const {
+    if (node.object.is_none()) return false;
+    for (std::size_t light = 0; light < pass_.change.given.size(); ++light)
+      if ((use_ == RayUse::colors || pass_.change.given[light] != 0) &&
+          reaches(changed_.block.lights[node.first_light + light].state))
+        return true;
+    return false;
+  }
+
   void pack_sample(const Batch& batch, std::uint32_t root, std::uint32_t sample) {
     SampleTrees& packed = result_.fresh.packed;
     words_.clear();
-    packed.samples.push_back(sample);
+    const std::size_t first = packed.hits.size();
     pack(batch.block, root, pass_.grow_after.layout(), words_, packed.hits);
+    if (is_as_stored(sample, std::span(packed.hits).subspan(first))) {
+      packed.hits.resize(first);
+      return;
+    }
+    packed.samples.push_back(sample);
     packed.path_of.push_back(packed.paths.intern(words_));
     packed.first_hit.push_back(hit_place(packed.hits.size()));
   }
+  [[nodiscard]] bool is_as_stored(std::uint32_t sample, std::span<const Hit> hits) const {
+    return pass_.change.step.rays.keeps_places && has_hits(trees_) && std::ranges::equal(hits, trees_.hits_of(sample)) &&
+           std::ranges::equal(words_, pass_.image.paths.words(trees_.paths[sample]));
+  }
 
-  void shade(Batch& batch, PathShader& shader, TermSign sign, TileSums& terms,
-             const PathShader::Wanted& wanted) {
+  void shade(Batch& batch, PathShader& shader, TermSign sign, TileSums& terms, PathShader::Wanted wanted) {
     if (batch.roots.empty()) return;
+    wanted.weights = batch.weights;
     shader.shade(batch.block, samples_, sign, terms, wanted);
-    batch.block.clear();
-    batch.roots.clear();
+    for (std::size_t k = 0; k < batch.is_recorded.size(); ++k)
+      if (batch.is_recorded[k] != 0) recorder_.add_weights(batch.block, batch.roots[k], shader.weights());
+    batch.clear();
   }
   void flush() {
     stop_if_interrupted();
-    shade(old_, *shader_before_, TermSign::subtract, old_terms_, {no_sums_, pass_.change.taken, whole_});
-    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_});
+    const PathShader::Wanted taken{no_sums_, pass_.change.taken, whole_, {}};
+    if (is_shared_ && takes_or_shades_ && !changed_.roots.empty())
+      shader_before_->shade(changed_.block, samples_, TermSign::subtract, old_terms_, taken);
+    shade(old_, *shader_before_, TermSign::subtract, old_terms_, taken);
+    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_, {}});
   }
 
   const PathPass& pass_;
+  const TileRays& rays_;
+  RayUse use_;
+  RayRecorder recorder_;
   const TileTrees& trees_;
   TileRect rect_;
   std::uint32_t samples_;
@@ -141,6 +245,9 @@ class PathTileUpdater {
   TileSums old_terms_, new_terms_;
   std::vector<std::uint8_t> no_sums_;
   bool adds_, takes_;  // terms of some lights, beside those of samples whose terms all change
+  bool is_shared_;         // trees as they were are those as they are
+  bool takes_or_shades_;   // terms are taken out
+  bool misses_are_dark_;
   Batch old_;      // trees as they were, of samples whose terms change, or of which some lights' are taken out
   Batch changed_;  // the same as they are now, and those of which only some lights are worked out afresh
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
@@ -150,10 +257,13 @@ class PathTileUpdater {
 
 }  // namespace
 
-PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums) {
-  return PathTileUpdater(pass, tile).update(sums);
+PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums, const TileRays& rays) {
+  return PathTileUpdater(pass, tile, rays).update(sums);
 }
 
-PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile) { return PathTileUpdater(pass, tile).trace(); }
+PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile) {
+  static const TileRays kNone;
+  return PathTileUpdater(pass, tile, kNone).trace();
+}
 
 }  // namespace relook

@@ -2,13 +2,24 @@
 // taken out of its sums, new ones added: base minus old plus new is the full render's, bit for bit. Tiles can be done at
 // the same time.
 #pragma once
+#include <optional>
+
 #include "base/pool.h"
 #include "image/tile_light.h"
 #include "replay/path/path_change.h"
 #include "replay/replay_parts.h"
 #include "trace/tree/grow.h"
+#include "trace/update/kept_rays.h"
 
 namespace relook {
+
+/// What kept rays are good for in a step.
+enum class RayUse : std::uint8_t {
+  none,
+  tests,  // stored segments are tested along them; trees that change are grown without
+  colors,  // no tree changes
+  lights  // with their weights: only lights change, of which each has its own terms
+};
 
 /// What all tiles of a step have in common.
 struct PathPass {
@@ -23,18 +34,23 @@ struct PathPass {
   std::vector<std::uint8_t> update_path;  // by path: its trees may change, or must be packed anew
   std::vector<std::uint8_t> shade_path;   // by path: its terms change though its tree does not
   std::vector<std::uint8_t> relight_path;  // by path: lights that are taken or given may reach it; empty: they may all
+  std::vector<std::uint8_t> named_path;    // by path: it names an object with a flag; empty: none does
+  bool updates_all = false;                // every path is in update_path
+  RayUse ray_use = RayUse::none;
 };
 
 struct PathTileResult {
-  NewSamples fresh;  // trees alone
+  NewSamples fresh;              // trees alone
+  std::optional<TileRays> rays;  // to be kept from now on; none: as before
   PackedSums sums;   // of the tile as it is now
   bool has_changed = false;
   std::uint64_t samples = 0;  // whose terms have been worked out
   GrowCounters counters;
 };
 
-/// `sums`: of the tile before the edit. Requires: the tile's hits are there.
-[[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums);
+/// `sums`, `rays`: of the tile before the edit. Requires: the tile's hits are there.
+[[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
+                                              const TileRays& rays);
 /// The same of a tile whose hits are not: all is traced again.
 [[nodiscard]] PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile);
 

@@ -58,10 +58,13 @@ struct GrowScene {
 void trace_trees(const GrowScene& grow, std::span<const SpawnedRay> primaries, std::uint32_t first_sample,
                  TreeBlock& block, std::vector<std::uint32_t>& roots, GrowCounters& counters);
 
+class KeptRay;  // trace/update/kept_rays.h
+
 /// A stored ray tree being walked.
 struct StoredTree {
   PathCursor cursor;
   std::optional<std::span<const Hit>> hits;  // none: not kept; a tree that meets nothing has an empty span
+  const KeptRay* kept = nullptr;             // the tree's rays behind the first, to update_tree alone; null: not kept
 };
 
 /// Appends the ray tree of one sample from its path and hits. Hits that are not kept are found again in `grow.objects`
@@ -84,7 +87,9 @@ struct RayChange {
   SelectionBounds bounds;                          // of these three, where they are not empty
   std::vector<LightId> old_lights;                 // light order of the stored trees
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
+  std::vector<std::uint32_t> lost_lights;          // places in the old light order to which no new one refers
   bool lights_changed = false;                     // any light added, deleted, moved or reordered
+  bool keeps_places = false;                       // the light order is the stored one, whatever has moved
 
   [[nodiscard]] std::uint8_t flags(ObjectId id) const {
     return objects.empty() ? std::uint8_t{0} : objects[id.index()];
@@ -95,6 +100,8 @@ struct RayChange {
   [[nodiscard]] bool only_lights() const {
     return before.empty() && moved_after.empty() && shadows_before.empty() && shadows_after.empty();
   }
+  /// Finds the lost lights from the old ones and their new places.
+  void find_lost_lights();
   /// Makes room for the flags of that many objects.
   void reserve(std::size_t count) {
     objects.resize(count, 0);
@@ -111,7 +118,9 @@ enum class TreeChange : std::uint8_t {
 };
 
 /// Appends the ray tree of one sample as it is after the change, reusing what is stored and still valid. `touches`: the
-/// segments that the selection may meet or may have met; null: any. Requires: `stored` has its hits.
+/// segments that the selection may meet or may have met; null: any. Requires: `stored` has its hits. With its rays kept
+/// nothing is spawned, nodes have no lobes, and a tree that would be TreeChange::all is left half done; they are there
+/// only if no object of the tree has a flag.
 std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const Touches* touches,
                           const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
                           GrowCounters& counters, TreeChange& what);

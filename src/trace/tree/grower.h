@@ -32,11 +32,12 @@ class Grower {
     return static_cast<std::uint32_t>(b_.nodes.size() - 1);
   }
 
-  void set_hit(std::uint32_t index, ObjectId object, const Hit& hit) {
+  /// `coverage`: its choice, or null: it is found.
+  void set_hit(std::uint32_t index, ObjectId object, const Hit& hit, const CoverageChoice* coverage = nullptr) {
     RayNode& node = b_.nodes[index];
     node.object = object;
     node.hit = hit;
-    complete(node, g_.scene.object(object));
+    complete(node, g_.scene.object(object), coverage);
     node.first_light = static_cast<std::uint32_t>(b_.lights.size());
     if (b_.lights.size() + lights().size() > kNoNode) throw std::bad_alloc();  // more than first_light can tell
     b_.lights.resize(b_.lights.size() + lights().size());

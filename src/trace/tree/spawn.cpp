@@ -38,7 +38,7 @@ class Spawner {
   SpawnedRay* add(Branch branch, const Direction& direction, float side, float fresnel) {
     SpawnedRay* ray = add(branch, fresnel);
     if (ray == nullptr) return nullptr;
-    ray->origin = node_.point.position + node_.point.geometric * (side * node_.point.offset);
+    ray->origin = left_at(node_.point, side);
     ray->direction = direction;
     ray->cone_width = node_.ray.cone_width + node_.ray.cone_spread * node_.length;
     return ray;
@@ -46,15 +46,7 @@ class Spawner {
   /// A ray that goes straight on.
   SpawnedRay* add_straight(Branch branch, float fresnel) {
     SpawnedRay* ray = add(branch, fresnel);
-    if (ray == nullptr) return nullptr;
-    ray->origin = node_.ray.origin;
-    ray->direction = node_.ray.direction;
-    ray->cone_width = node_.ray.cone_width;
-    ray->start = node_.ray.start;
-    ray->end = node_.ray.end;
-    ray->behind = {node_.object, node_.hit, node_.t, object_.key};
-    ray->travelled = node_.length;
-    ray->travelled_slack = distance_slack(node_, object_);
+    if (ray != nullptr) go_straight(node_, object_, *ray);
     return ray;
   }
   void set_may_spawn(bool may_spawn) { may_spawn_ = may_spawn; }
@@ -312,6 +304,23 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
 }
 
 }  // namespace
+
+void go_straight(const RayNode& node, const RayObject& object, SpawnedRay& ray) {
+  ray.origin = node.ray.origin;
+  ray.direction = node.ray.direction;
+  ray.cone_width = node.ray.cone_width;
+  ray.start = node.ray.start;
+  ray.end = node.ray.end;
+  ray.behind = {node.object, node.hit, node.t, object.key};
+  ray.travelled = node.length;
+  ray.travelled_slack = distance_slack(node, object);
+}
+
+VertexLobes find_lobes(const RayNode& node, const RayObject& object) {
+  if (node.ray.path.gathers || !node.coverage.sees_surface()) return {};
+  return lobes_at(node, object, normal_of_slot(node, object, Slot::normal, object.material->normal_scale),
+                  coat_normal(node, object));
+}
 
 void spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
   if (rule.integrator == Integrator::path)

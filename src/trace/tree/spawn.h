@@ -52,6 +52,14 @@ class Spawned {
   std::array<Slot, kBranches> slots_;
   BranchSet branches_;
 };
+/// Where a ray leaves a surface. `side`: +1 that of the ray that came, -1 the other.
+[[nodiscard]] inline Point left_at(const SurfacePoint& point, float side) {
+  return point.position + point.geometric * (side * point.offset);
+}
+/// The way of a ray that goes straight on from a completed node.
+void go_straight(const RayNode& node, const RayObject& object, SpawnedRay& ray);
+/// The lobes of a completed node of the path integrator, as spawn() finds them; without any where none scatters.
+[[nodiscard]] VertexLobes find_lobes(const RayNode& node, const RayObject& object);
 /// Adds them to `spawned`, which is empty. A pure function of the node, its object and the rule.
 void spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned);
 

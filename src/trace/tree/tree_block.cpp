@@ -28,14 +28,14 @@ CoverageChoice coverage_choice(const RayNode& node, const RayObject& object) {
   return {passes ? CoverageChoice::Way::passes : CoverageChoice::Way::stops, bucket};
 }
 
-void complete(RayNode& node, const RayObject& object) {
+void complete(RayNode& node, const RayObject& object, const CoverageChoice* coverage) {
   node.point = surface_point(object, node.hit, node.ray.direction);
   const Direction way = node.point.position - node.ray.origin;
   node.length = std::sqrt(way.dot(way));
   const float width = node.ray.cone_width + node.ray.cone_spread * node.length;
   node.has_back = object.blurs && !object.optics.bent;
   node.footprint = width / std::fmax(-node.ray.direction.dot(node.point.geometric), 0.05F);
-  node.coverage = coverage_choice(node, object);
+  node.coverage = coverage != nullptr ? *coverage : coverage_choice(node, object);
 }
 
 float distance_slack(const RayNode& node, const RayObject& object) {

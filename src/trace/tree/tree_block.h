@@ -114,8 +114,9 @@ struct TreeBlock {
   void clear() { rewind({}); }
 };
 
-/// Fills length, footprint, point and coverage of a node whose ray, object and hit are set.
-void complete(RayNode& node, const RayObject& object);
+/// Fills length, footprint, point and coverage of a node whose ray, object and hit are set. `coverage`: its choice, or
+/// null: it is found.
+void complete(RayNode& node, const RayObject& object, const CoverageChoice* coverage = nullptr);
 
 /// The choice at a completed node, with this value of its object. It follows from a bucket of the coverage that colours
 /// are weighed by, at the ray's footprint.

@@ -1,107 +1,51 @@
-// Ray trees after a change of the scene (paper 2.2): stored segments are tested against the selection; only what it
-// touches is traced against the whole scene.
+// The light that reaches a stored node after a change: each shadow segment kept, tested against the selection or traced
+// again; inside src/trace.
+#pragma once
+#include <algorithm>
+#include <iterator>
+#include <vector>
+
 #include "trace/box_range.h"
 #include "trace/object_rays.h"
 #include "trace/shadow/shadow_line.h"
 #include "trace/tree/grower.h"
 #include "trace/tree/segment_tests.h"
-#include "trace/tree/spawn.h"
 
 namespace relook {
-namespace {
 
-class Updater {
+class ShadowUpdater {
  public:
-  Updater(const GrowScene& grow, const RayChange& change, const Touches* touches, std::uint32_t sample,
-          StoredTree stored, TreeBlock& block, GrowCounters& counters)
-      : grower_(grow, sample, block),
+  /// All outlive it. `what`: is told what becomes another.
+  ShadowUpdater(Grower& grower, const RayChange& change, SegmentTests& tests, GrowCounters& counters, TreeChange& what)
+      : grower_(grower),
         change_(change),
-        touches_(touches),
-        stored_(stored),
+        tests_(tests),
         counters_(counters),
-        tests_(change, grow.shadow_bits, counters),
-        line_(grow.shadow_bits),
-        object_rays_(grow.objects, counters) {}
+        what_(what),
+        line_(grower.grow().shadow_bits),
+        object_rays_(grower.grow().objects, counters) {}
 
-  std::uint32_t update(const SpawnedRay& ray, std::uint32_t parent, History history) {
-    std::span<const Hit> hits;
-    const PathNode node = take(stored_, hits);
-    if (!node.is_miss() && (change_.flags(node.object) & RayChange::moved) != 0) {
-      // The selection is removed: what lies behind it shows (paper 2.2).
-      counters_.culled.dropped += node.segments() + skip_children(stored_, node);
-      note(TreeChange::all);
-      return trace(ray, parent);
+  /// `hits`: of the node and its filters, as stored.
+  void update(std::uint32_t index, const PathNode& node, std::span<const Hit> hits, const Touch& touch) {
+    const bool reads_entries = !only_lights_ || !node.entries.empty();
+    if (reads_entries) read_entries(node, hits);
+    for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
+      const std::uint32_t old = change_.old_light_index[light];
+      const ShadowState before = old == kNoNode ? ShadowState::facing_away : shadow_state(node.lights, old);
+      const bool touched = touch.touches(before == ShadowState::blocked, light);
+      if (reads_entries || old == kNoNode)
+        update_light({index, light, {}, before, old == kNoNode ? 0 : old, old == kNoNode}, touched);
+      else
+        keep_state(index, light, before, touched);
     }
-    const std::uint32_t index = grower_.append(ray, parent);
-    if (!node.is_miss()) grower_.set_hit(index, node.object, hits.front());
-    const Touch touch = may_touch(history);
-    if (test(index, node, touch.ray)) return index;
-    if (node.is_miss()) return index;
-    update_lights(index, node, hits, touch);
-    update_children(index, node, history);
-    return index;
+    note_lost_lights(node);
   }
-  [[nodiscard]] TreeChange what() const { return what_; }
 
  private:
-  /// What of a node's segments the selection may meet.
-  [[nodiscard]] Touch may_touch(History history) const {
-    if (touches_ == nullptr) return {history, true, true, LightSet::all(), LightSet::all()};
-    const Touch* touch = touch_of(*touches_, history);
-    return touch != nullptr ? *touch : Touch{history};
-  }
-
   void note(TreeChange what) { what_ = std::max(what_, what); }
 
-  std::uint32_t trace(const SpawnedRay& ray, std::uint32_t parent) {
-    const std::uint32_t index = grower_.trace(ray, parent, counters_);
-    grower_.trace_lights(index, counters_);
-    return index;
-  }
-
-  /// The ray test: does the selection, where it is now, come before what is stored? If so, regrows the node.
-  bool test(std::uint32_t index, const PathNode& node, bool touched) {
-    if (change_.only_lights()) return tests_.tests_ray(touched, {});
-    TreeBlock& block = grower_.block();
-    const SpawnedRay ray = block.nodes[index].ray;
-    Ray segment = stored_segment(ray);
-    float slack = 0;
-    if (touched && !node.is_miss()) {
-      slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object));
-      segment.t_max = std::min(block.nodes[index].length + slack, ray.end);
-    }
-    if (!tests_.tests_ray(touched, segment)) return false;
-    Meeting meeting = Tracer::intersect(change_.moved_after, segment);
-    if (meeting.object.is_none()) return false;
-    const Ray whole = grower_.whole_ray(ray, counters_);
-    if (ray.goes_on()) {  // behind what it comes from?
-      segment.behind = whole.behind;
-      segment.t_min = ray.start;
-      meeting = Tracer::intersect(change_.moved_after, segment);
-      if (meeting.object.is_none()) return false;
-    }
-    if (!node.is_miss() && meeting.t > block.nodes[index].length - slack) {
-      ++counters_.ray_updates;
-      const Meeting nearest = Tracer::intersect(*grower_.grow().level, whole);
-      if (nearest.object == node.object && nearest.hit == block.nodes[index].hit) return false;
-      if (!nearest.object.is_none()) return regrow(index, node, nearest);
-    }
-    return regrow(index, node, meeting);
-  }
-
-  /// Requires: something is met.
-  bool regrow(std::uint32_t index, const PathNode& node, const Meeting& meeting) {
-    note(TreeChange::all);
-    TreeBlock& block = grower_.block();
-    if (!node.is_miss()) block.lights.resize(block.nodes[index].first_light);
-    counters_.culled.dropped += node.shadow_segments + skip_children(stored_, node);
-    grower_.trace_from(index, meeting, counters_);
-    grower_.trace_lights(index, counters_);
-    return true;
-  }
-
-  void update_lights(std::uint32_t index, const PathNode& node, std::span<const Hit> hits, const Touch& touch) {
-    // What is stored by old light, since lights may have changed places.
+  /// What is stored by old light, since lights may have changed places.
+  void read_entries(const PathNode& node, std::span<const Hit> hits) {
     EntryReader entries(node.entries, grower_.grow().shadow_bits);
     FilterReader filters(hits.subspan(1));
     stored_filters_.resize(change_.old_lights.size());
@@ -111,25 +55,22 @@ class Updater {
       stored_entries_[old] = entries.next(state);
       if (state == ShadowState::filtered) filters.next(stored_entries_[old].objects, stored_filters_[old]);
     }
-    for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
-      const std::uint32_t old = change_.old_light_index[light];
-      const ShadowState before = old == kNoNode ? ShadowState::facing_away : shadow_state(node.lights, old);
-      update_light({index, light, {}, before, old == kNoNode ? 0 : old, old == kNoNode},
-                   touch.touches(before == ShadowState::blocked, light));
-    }
-    if (change_.lights_changed) note_lost_lights(node);
+  }
+
+  /// Of a light that stays where it is while only other lights change.
+  void keep_state(std::uint32_t index, std::size_t light, ShadowState state, bool touched) {
+    if (state == ShadowState::facing_away) return;
+    tests_.tests_shadow(state, touched, {});
+    grower_.set_link(index, light, state);
   }
 
   /// A light that lit the node and is no more, or has moved, changes its colour even if nothing else does.
   void note_lost_lights(const PathNode& node) {
-    std::vector<bool> kept(change_.old_lights.size(), false);
-    for (std::uint32_t old : change_.old_light_index)
-      if (old != kNoNode) kept[old] = true;
-    for (std::size_t old = 0; old < kept.size(); ++old)
-      if (!kept[old] && shadow_state(node.lights, old) != ShadowState::facing_away) {
-        note(TreeChange::lights);
-        ++counters_.culled.dropped;
-      }
+    for (const std::uint32_t old : change_.lost_lights) {
+      if (shadow_state(node.lights, old) == ShadowState::facing_away) continue;
+      note(TreeChange::lights);
+      ++counters_.culled.dropped;
+    }
   }
 
   /// A light of a node that is being updated.
@@ -144,7 +85,7 @@ class Updater {
 
   /// `touched`: may the selection cross the segment, or did it so before?
   void update_light(LightUpdate l, bool touched) {
-    if (change_.only_lights() && !l.is_new) {  // its segment is worked out if surfaces on it are to be completed
+    if (only_lights_ && !l.is_new) {  // its segment is worked out if surfaces on it are to be completed
       if (l.before == ShadowState::facing_away) return;
       tests_.tests_shadow(l.before, touched, {});
       if (l.before == ShadowState::filtered) grower_.gathers(l.index, l.light, l.segment);
@@ -343,40 +284,12 @@ class Updater {
       grower_.set_filters(l.index, l.light, l.segment, stored_filters_[l.old]);
   }
 
-  void update_children(std::uint32_t index, const PathNode& node, History history) {
-    Spawned now;
-    grower_.find_spawned(index, now);
-    if (now.cut != node.flags.cut()) note(TreeChange::all);
-    const bool respawns = (change_.flags(node.object) & RayChange::respawns) != 0;
-    Spawned before;
-    if (respawns) {
-      const RayObject& then = change_.value_before(node.object);
-      RayNode as_before = grower_.block().nodes[index];
-      as_before.coverage = coverage_choice(as_before, then);
-      spawn(as_before, then, grower_.grow().rule(), before);
-    }
-    for (std::size_t b = 0; b < kBranches; ++b) {
-      const auto branch = static_cast<Branch>(b);
-      const bool is_stored = node.has_child(branch), is_now = now.branches().has(branch);
-      const bool goes_as_before =
-          is_stored && is_now &&
-          (!respawns || (before.branches().has(branch) && before.ray(branch).is_same_way(now.ray(branch))));
-      if (!goes_as_before && (is_stored || is_now)) note(TreeChange::all);
-      if (is_stored && !goes_as_before) counters_.culled.dropped += skip_tree(stored_);
-      if (!is_now) continue;
-      const SpawnedRay& ray = now.ray(branch);
-      const std::uint32_t child = goes_as_before ? update(ray, index, history.child(branch)) : trace(ray, index);
-      grower_.block().nodes[index].child[b] = child;
-    }
-  }
-
-  Grower grower_;
+  Grower& grower_;
   const RayChange& change_;
-  const Touches* touches_;  // null: any segment may be touched
-  StoredTree stored_;
+  SegmentTests& tests_;
   GrowCounters& counters_;
-  SegmentTests tests_;
-  TreeChange what_ = TreeChange::none;
+  TreeChange& what_;
+  bool only_lights_ = change_.only_lights();
   std::vector<std::vector<FilterNode>> stored_filters_;  // by old light
   std::vector<LightEntry> stored_entries_;               // by old light
   std::vector<Crossing> crossings_before_, merged_, ranged_;
@@ -385,16 +298,5 @@ class Updater {
   ObjectRays object_rays_;
   std::vector<std::uint32_t> steady_;  // objects of its transparent surfaces beside the selection's
 };
-
-}  // namespace
-
-std::uint32_t update_tree(const GrowScene& grow, const RayChange& change, const Touches* touches,
-                          const SpawnedRay& primary, std::uint32_t sample, StoredTree stored, TreeBlock& block,
-                          GrowCounters& counters, TreeChange& what) {
-  Updater updater(grow, change, touches, sample, stored, block, counters);
-  const std::uint32_t root = updater.update(primary, kNoNode, History::primary());
-  what = updater.what();
-  return root;
-}
 
 }  // namespace relook
