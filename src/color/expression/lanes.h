@@ -92,6 +92,7 @@ class KernelRun {
         step = compute(step, end, lanes);
     }
   }
+  [[nodiscard]] std::size_t outputs() const { return kernel_.outputs.size(); }
   /// The lanes of an output, after run().
   [[nodiscard]] const float* output(std::size_t k) const { return scratch_.at[kernel_.outputs[k]]; }
 

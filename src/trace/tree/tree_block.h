@@ -117,6 +117,9 @@ struct TreeBlock {
 /// Fills length, footprint, point and coverage of a node whose ray, object and hit are set.
 void complete(RayNode& node, const RayObject& object);
 
+/// What a texture slot of the object holds at a completed node, by the ray's footprint; white if it holds nothing.
+[[nodiscard]] Rgba texel_at(const RayNode& node, const RayObject& object, const TextureSlot& slot);
+
 /// The choice at a completed node, with this value of its object. It follows from a bucket of the coverage that colours
 /// are weighed by, at the ray's footprint.
 [[nodiscard]] CoverageChoice coverage_choice(const RayNode& node, const RayObject& object);
