@@ -13,7 +13,9 @@ void NodeBatch::load(const Kernel::Step& step, std::size_t first, std::size_t la
     case Op::input:
       return gather(step.payload, from, colors, scratch.own(step.out));
     case Op::coordinates:
-      return gather_coordinates(parameters.slot(step), from, scratch.own(step.out, 4));
+      if (Column* out = scratch.share(step.out, mapping_key(parameters.slot(step))))
+        gather_coordinates(parameters.slot(step), from, out);
+      return;
     case Op::tangent_frame:
       return gather_tangent_frames(parameters.slot(step), from, scratch.own(step.out, 6));
     default:

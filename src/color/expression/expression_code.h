@@ -67,6 +67,9 @@ enum class Input : std::uint8_t {
   light_radiance,   // by axis: channel; of that sample at unit colour and intensity
 };
 
+/// Is it of a sample of a light, not of the hit alone?
+[[nodiscard]] constexpr bool is_of_light_sample(Input input) { return input >= Input::light_direction; }
+
 /// In the expression of what any one lamp adds: that lamp, and its place in the light order.
 inline constexpr LightId kLightAtHand{(1U << 24) - 1U};
 inline constexpr std::uint32_t kPlaceAtHand = (1U << 20) - 1U;

@@ -78,6 +78,12 @@ void gather(Payload payload, const Gathering& from, const BlockColors& colors, f
   }
 }
 
+std::uint32_t mapping_key(const TextureSlot& slot) {
+  const bool is_procedural = slot.kind == TextureKind::procedural;  // and so has another mapping in the place of uv
+  return static_cast<std::uint32_t>(slot.mapping) << 24 | std::uint32_t{slot.axis} << 16 |
+         std::uint32_t{slot.texcoord} << 8 | (is_procedural ? 1U : 0U);
+}
+
 void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out) {
   for_each_lane(from, [&](std::size_t lane, const auto& hit) {
     const TextureCoordinates at = texture_coordinates(from.scene.object(hit.object), hit.hit, hit.point.local, slot);

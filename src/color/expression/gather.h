@@ -16,6 +16,8 @@ struct Gathering {
 
 /// Fills out[lane] with an input.
 void gather(Payload payload, const Gathering& from, const BlockColors& colors, float* out);
+/// Slots with the same have the same coordinates at every hit.
+[[nodiscard]] std::uint32_t mapping_key(const TextureSlot& slot);
 /// Op::coordinates: four columns.
 void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out);
 /// Op::tangent_frame: six columns.

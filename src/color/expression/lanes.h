@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <deque>
 #include <vector>
 
 #include "color/expression/expression_code.h"
@@ -41,6 +42,26 @@ struct Scratch {
     at[reg] = column;
     return column;
   }
+  /// Lets four registers in a row have the columns that loads with the same key share while a kernel runs over the same
+  /// lanes. These are to be written, unless null: another load has done so.
+  [[nodiscard]] Column* share(std::uint32_t first, std::uint32_t key) {
+    std::size_t place = 0;
+    while (place < shared_count && shared[place].key != key) ++place;
+    const bool is_new = place == shared_count;
+    if (is_new && shared_count++ == shared.size()) shared.emplace_back();
+    Shared& found = shared[place];
+    found.key = key;
+    for (std::uint32_t k = 0; k < 4; ++k) at[first + k] = found.columns[k].lanes.data();
+    return is_new ? found.columns.data() : nullptr;
+  }
+  void forget_shared() { shared_count = 0; }
+
+  struct Shared {
+    std::uint32_t key = 0;
+    std::array<Column, 4> columns;
+  };
+  std::deque<Shared> shared;  // the first `shared_count` hold something; they stay where they are
+  std::size_t shared_count = 0;
 };
 
 /// What the parameters of a kernel point to.
@@ -83,6 +104,7 @@ class KernelRun {
 
   /// Lanes [first, first + lanes) of the batch, at most kLanes.
   void run(std::size_t first, std::size_t lanes) {
+    scratch_.forget_shared();
     for (auto step = kernel_.varying.data(), end = step + kernel_.varying.size(); step != end;) {
       const bool is_loaded = step->op == Op::input || step->op == Op::column || step->op == Op::coordinates ||
                              step->op == Op::tangent_frame;
@@ -92,6 +114,7 @@ class KernelRun {
         step = compute(step, end, lanes);
     }
   }
+  [[nodiscard]] std::size_t outputs() const { return kernel_.outputs.size(); }
   /// The lanes of an output, after run().
   [[nodiscard]] const float* output(std::size_t k) const { return scratch_.at[kernel_.outputs[k]]; }
 

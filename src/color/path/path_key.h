@@ -11,12 +11,14 @@ namespace relook {
 
 /// The pieces that a path is put together of. A program yields columns of three channels, in this order:
 ///   surface  the weight of each branch of `children`, in the order of Branch; what of its emission gets out; ambient
-///            light; the colour of an unlit surface; coverage (in all three)
-///   light    what the surface makes of a sample of a light
+///            light; the colour of an unlit surface; coverage (in all three). If it is lit there follow, as single
+///            channels, the values that `light` reads as Op::column: what of it no light changes, textures above all
+///   light    what a lit surface makes of a sample of a light
 ///   filter   the share of light that passes
 enum class PathPiece : std::uint8_t { surface, light, filter };
 
-/// Pieces with equal keys share a program and its parameters.
+/// Pieces with equal keys share a program and its parameters. `light` reads the same columns of all surfaces that differ
+/// in `gathers` and `children` alone, of which its key has none.
 struct PathKey {
   PathPiece piece = PathPiece::surface;
   MaterialId material;
@@ -24,6 +26,7 @@ struct PathKey {
   bool interface_only = false;  // the inner side of a volume
   bool gathers = false;         // surface: what it scatters does not count
   bool blurs = false;           // what goes through is scattered by a lobe
+  bool lit = false;             // surface: its columns for lights are wanted
   BranchSet children;           // surface
   auto operator<=>(const PathKey&) const = default;
 };

@@ -2,14 +2,15 @@
 
 #include <mutex>
 
+#include "color/expression/columns.h"
 #include "color/expression/gather.h"
 #include "color/path/path_surface.h"
 
 namespace relook {
 namespace {
 
-Kernel build_kernel(const Scene& scene, const MaterialStructure& structure, const PathKey& key) {
-  ExpressionBuilder builder(scene, structure);
+/// The channels of a piece's columns, as values of the builder's code.
+std::vector<Value> add_piece(ExpressionBuilder& builder, const PathKey& key) {
   NodeKey node;
   node.kind = key.piece == PathPiece::filter ? NodeKind::filter : NodeKind::surface;
   node.inside = key.inside;
@@ -17,9 +18,40 @@ Kernel build_kernel(const Scene& scene, const MaterialStructure& structure, cons
   node.interface_only = key.interface_only;
   node.children = key.children;
   SurfaceTerms terms(builder, node);
-  std::vector<Value> outputs;
+  std::vector<Value> channels;
   for (const Triple& column : path_columns(terms, key))
-    for (const Scalar& channel : {column.x, column.y, column.z}) outputs.push_back(channel.value);
+    for (const Scalar& channel : {column.x, column.y, column.z}) channels.push_back(channel.value);
+  return channels;
+}
+
+/// The piece of lights that reach a surface.
+PathKey light_key(PathKey key) {
+  key.piece = PathPiece::light;
+  key.gathers = key.lit = false;
+  key.children = {};
+  return key;
+}
+
+/// By value: does it depend on the sample of a light?
+std::vector<bool> find_sample_values(const Code& code) {
+  std::vector<bool> reads(code.size());
+  for (Value v = 0; v < code.size(); ++v)
+    reads[v] = (code[v].op == Op::input && is_of_light_sample(code[v].payload.input())) ||
+               any_operand(code[v], [&](Value operand) { return reads[operand]; });
+  return reads;
+}
+
+/// The light piece comes first in the code of every program that it is in, so that its columns are the same in all.
+Kernel build_kernel(const Scene& scene, const MaterialStructure& structure, const PathKey& key) {
+  ExpressionBuilder builder(scene, structure);
+  std::vector<Value> light, columns;
+  if (key.lit || key.piece == PathPiece::light) {
+    light = add_piece(builder, light_key(key));
+    columns = find_columns(builder.code(), find_uniform(builder.code()), find_sample_values(builder.code()), light);
+  }
+  if (key.piece == PathPiece::light) return make_kernel(with_columns(builder.code(), columns), light);
+  std::vector<Value> outputs = add_piece(builder, key);
+  outputs.insert(outputs.end(), columns.begin(), columns.end());
   return make_kernel(builder.code(), outputs);
 }
 
@@ -45,7 +77,13 @@ void PathPrograms::forget(MaterialId material) {
 
 void PathBatch::load(const Kernel::Step& step, std::size_t first, std::size_t lanes, const Parameters& parameters,
                      Scratch& scratch) const {
-  if (step.op == Op::input && step.payload.input() >= Input::light_direction) {
+  if (step.op == Op::column) {
+    const std::uint32_t number = step.payload.number();
+    float* out = scratch.own(step.out);
+    for (std::size_t lane = 0; lane < lanes; ++lane) out[lane] = terms[first + lane]->columns[number];
+    return;
+  }
+  if (step.op == Op::input && is_of_light_sample(step.payload.input())) {
     const std::uint32_t axis = step.payload.axis();
     float* out = scratch.own(step.out);
     for (std::size_t lane = 0; lane < lanes; ++lane) {

@@ -15,7 +15,8 @@
 
 namespace relook {
 
-/// A program and the material whose parameters its leaves read. Its outputs: red, green and blue of every column.
+/// A program and the material whose parameters its leaves read. Its outputs: red, green and blue of every column, then
+/// those that stand alone.
 struct BoundPathProgram {
   const Kernel* kernel = nullptr;
   MaterialId material;
@@ -43,6 +44,7 @@ struct LightTerm {
   Direction way;            // unit, to the sample
   std::array<float, 4> weights{};  // of diffuse, specular, coat and transmitted lobe
   Color radiance;                  // at unit colour and intensity
+  const float* columns = nullptr;  // of the node: what the program of its surface yields for that of lights
 };
 
 /// Nodes, filters or light terms that share a program, as what a kernel runs over.

@@ -14,7 +14,8 @@ namespace {
 std::uint64_t signature_of(const PathKey& key) {
   return std::uint64_t{key.material.index()} << 32 | std::uint64_t{key.children.bits()} << 8 |
          (key.inside ? 1U : 0U) | (key.vertex_colors ? 2U : 0U) | (key.interface_only ? 4U : 0U) |
-         (key.gathers ? 8U : 0U) | static_cast<unsigned>(key.piece) << 4 | (key.blurs ? 128U : 0U);
+         (key.gathers ? 8U : 0U) | static_cast<unsigned>(key.piece) << 4 | (key.blurs ? 128U : 0U) |
+         (key.lit ? 64U : 0U);
 }
 
 /// What the program of a hit says of it, beside its branches.
@@ -74,6 +75,16 @@ struct PathShader::Impl {
   }
   [[nodiscard]] bool is_light_wanted(std::uint32_t place, const RayNode& node) const {
     return is_whole(node) || wanted.lights[place] != 0;
+  }
+
+  [[nodiscard]] bool is_lit_by(std::uint32_t place, const RayNode& node) const {
+    const ShadowState state = block->lights[node.first_light + place].state;
+    return (state == ShadowState::open || state == ShadowState::filtered) && is_light_wanted(place, node);
+  }
+  [[nodiscard]] bool is_lit(const RayNode& node) const {
+    for (std::uint32_t place = 0; place < places.of_light.size(); ++place)
+      if (is_lit_by(place, node)) return true;
+    return false;
   }
 
   void put(std::uint32_t sum, const RayNode& node, const Color& term) {
@@ -152,6 +163,8 @@ struct PathShader::Impl {
     const std::vector<RayNode>& nodes = block->nodes;
     weights.assign(nodes.size(), Color(1, 1, 1));
     columns.resize(nodes.size());
+    lit_columns.clear();
+    first_lit_column.resize(nodes.size());
     batch_of.clear();
     all.clear();
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -160,6 +173,7 @@ struct PathShader::Impl {
       PathKey key = key_of(PathPiece::surface, nodes[i].object, nodes[i].point.inside);
       key.gathers = nodes[i].ray.path.gathers;
       key.children = children_of(nodes[i]);
+      key.lit = is_lit(nodes[i]);
       batch_of.push_back(number_of(key));
     }
     run(false, all, {}, [&](const auto& kernel, const PathKey& key, std::span<const std::uint32_t> chosen) {
@@ -179,6 +193,7 @@ struct PathShader::Impl {
                                       from_lanes(kernel, column + 2, lane) * scale,
                                       kernel.output(3 * (column + 3))[lane]};
       }
+      if (key.lit) keep_lit_columns(kernel, 3 * (column + 4), chosen);
     });
     open_shares.assign(nodes.size(), 0);
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
@@ -190,6 +205,17 @@ struct PathShader::Impl {
       weights[i] = weights[node.parent] * weights[i];
       if (node.ray.branch == Branch::transparency)
         open_shares[i] = open_shares[node.parent] * (1.0F - columns[node.parent].coverage);
+    }
+  }
+
+  /// What a program yields for lights, from its output `first` on.
+  void keep_lit_columns(const KernelRun<PathBatch>& kernel, std::size_t first, std::span<const std::uint32_t> chosen) {
+    const std::size_t count = kernel.outputs() - first, start = lit_columns.size();
+    lit_columns.resize(start + count * chosen.size());
+    for (std::size_t lane = 0; lane < chosen.size(); ++lane) first_lit_column[all[chosen[lane]]] = start + lane * count;
+    for (std::size_t k = 0; k < count; ++k) {
+      const float* from = kernel.output(first + k);
+      for (std::size_t lane = 0; lane < chosen.size(); ++lane) lit_columns[start + lane * count + k] = from[lane];
     }
   }
 
@@ -271,8 +297,7 @@ struct PathShader::Impl {
     const RayObject& object = scene.object(node.object);
     if (image.kind == TextureKind::none) return {1, 1, 1};
     if (!node.ray.path.from.is_none()) return emission_at(image, object, node.hit, node.point.local);
-    const Rgba value =
-        texture_value(image, texture_coordinates(object, node.hit, node.point.local, image), node.footprint);
+    const Rgba value = texel_at(node, object, image);
     return {value.r, value.g, value.b};
   }
 
@@ -285,10 +310,10 @@ struct PathShader::Impl {
       if (node.object.is_none() || is_black(weights[i])) continue;
       std::uint32_t program = kNoNode;
       for (std::uint32_t place = 0; place < places.of_light.size(); ++place) {
-        const ShadowState state = block->lights[node.first_light + place].state;
-        if ((state != ShadowState::open && state != ShadowState::filtered) || !is_light_wanted(place, node)) continue;
-        const auto term = light_term(scene, *block, i, place);
+        if (!is_lit_by(place, node)) continue;
+        auto term = light_term(scene, *block, i, place);
         if (!term) continue;
+        term->columns = lit_columns.data() + first_lit_column[i];
         all.push_back(i);
         terms.push_back(*term);
         if (program == kNoNode) program = number_of(key_of(PathPiece::light, node.object, node.point.inside));
@@ -333,6 +358,8 @@ struct PathShader::Impl {
   std::vector<LightTerm> terms;
   std::vector<Color> weights, tints;  // by node, by filter
   std::vector<HitColumns> columns;    // by node
+  std::vector<float> lit_columns;     // of lit nodes, those of a node in a row: what programs of lights read
+  std::vector<std::size_t> first_lit_column;  // by node, if it is lit
   std::vector<float> open_shares;     // by node: what of the eye's straight ray gets there
   Scratch scratch;
 };

@@ -12,14 +12,6 @@
 namespace relook {
 namespace {
 
-/// A factor times a channel of its texture.
-float textured(const RayNode& node, const RayObject& object, float factor, Slot slot, int channel) {
-  const TextureSlot& texture = object.material->slot(slot);
-  if (texture.kind == TextureKind::none) return factor;
-  return factor *
-         texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint)[channel];
-}
-
 /// The direction of a brush, and how much wider the lobe is along it. Zero where the mesh gives none.
 struct Brush {
   Direction along{0, 0, 0};
@@ -34,8 +26,7 @@ Brush brush_at(const RayNode& node, const RayObject& object) {
   const float cosine = portable_cos_turns(turns), sine = portable_sin_turns(turns);
   if (texture.kind == TextureKind::none)
     return {brush_axes(frame.tangent, frame.bitangent, cosine, sine).along, material.anisotropy};
-  const Rgba texel =
-      texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint);
+  const Rgba texel = texel_at(node, object, texture);
   const float u = texel.r * 2 - 1, v = texel.g * 2 - 1, scale = 1 / std::sqrt(std::fmax(u * u + v * v, 1e-30F));
   return {brush_axes(frame.tangent, frame.bitangent, (cosine * u - sine * v) * scale, (sine * u + cosine * v) * scale)
               .along,
@@ -97,11 +88,11 @@ VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal&
     lobes.coat_base = basis_about(coat_normal);
     lobes.coat_view = lobes.coat_base.to_local(view);
     coat = coat_reflectance(schlick(std::fmax(lobes.coat_view.z, kLeastCosine)));
-    set_glossy(textured(node, object, material.clearcoat_roughness, Slot::clearcoat_roughness, 1), floor,
-               lobes.coat_bucket, lobes.coat);
+    const Rgba texel = texel_at(node, object, material.slot(Slot::clearcoat_roughness));
+    set_glossy(material.clearcoat_roughness * texel.g, floor, lobes.coat_bucket, lobes.coat);
   }
-  const float roughness =
-      set.specular || set.transmission ? textured(node, object, material.roughness, Slot::metallic_roughness, 1) : 1.0F;
+  const Rgba texel = texel_at(node, object, material.slot(Slot::metallic_roughness));
+  const float roughness = material.roughness * texel.g;
   if (set.transmission) set_transmission(node, object, roughness, lobes);
   if (set.specular) {
     set_glossy(roughness, floor, lobes.specular_bucket, lobes.specular);
@@ -113,7 +104,7 @@ VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal&
       lobes.view = lobes.base.to_local(view);
     }
   }
-  const MetallicBucket metallic = bucket_of_metallic(textured(node, object, material.metallic, Slot::metallic_roughness, 2));
+  const MetallicBucket metallic = bucket_of_metallic(material.metallic * texel.b);
   const float ior = std::fmax(material.ior, 1.0F);
   const float reflectance = dielectric_reflectance(cosine, node.point.inside && object.optics.bent ? 1 / ior : ior);
   lobes.shares = lobe_shares(set, metallic, reflectance, coat);

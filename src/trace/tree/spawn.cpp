@@ -22,7 +22,7 @@ float coat_term(float cosine) {
 Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, float scale) {
   const TextureSlot& map = object.material->slot(slot);
   if (map.kind == TextureKind::none) return node.point.shading;
-  const Rgba texel = texture_value(map, texture_coordinates(object, node.hit, node.point.local, map), node.footprint);
+  const Rgba texel = texel_at(node, object, map);
   return mapped_normal(tangent_frame(object, node.hit, node.point, map), node.point, texel, scale);
 }
 

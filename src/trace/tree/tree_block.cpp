@@ -10,15 +10,18 @@ namespace {
 
 /// The order of the factors is that of colour expressions (SurfaceTerms::coverage).
 float coverage_at(const RayNode& node, const RayObject& object) {
-  float alpha = object.material->base_color.a;
   const TextureSlot& texture = object.material->slot(Slot::base_color);
-  if (texture.kind != TextureKind::none)
-    alpha *= texture_value(texture, texture_coordinates(object, node.hit, node.point.local, texture), node.footprint).a;
+  float alpha = object.material->base_color.a * texel_at(node, object, texture).a;
   if (!object.mesh->colors.empty()) alpha *= vertex_color(*object.mesh, node.hit).a;
   return alpha;
 }
 
 }  // namespace
+
+Rgba texel_at(const RayNode& node, const RayObject& object, const TextureSlot& slot) {
+  if (slot.kind == TextureKind::none) return {1, 1, 1, 1};
+  return texture_value(slot, texture_coordinates(object, node.hit, node.point.local, slot), node.footprint);
+}
 
 CoverageChoice coverage_choice(const RayNode& node, const RayObject& object) {
   const PathState& path = node.ray.path;

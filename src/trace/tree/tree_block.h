@@ -118,6 +118,9 @@ struct TreeBlock {
 /// null: it is found.
 void complete(RayNode& node, const RayObject& object, const CoverageChoice* coverage = nullptr);
 
+/// What a texture slot of the object holds at a completed node, by the ray's footprint; white if it holds nothing.
+[[nodiscard]] Rgba texel_at(const RayNode& node, const RayObject& object, const TextureSlot& slot);
+
 /// The choice at a completed node, with this value of its object. It follows from a bucket of the coverage that colours
 /// are weighed by, at the ray's footprint.
 [[nodiscard]] CoverageChoice coverage_choice(const RayNode& node, const RayObject& object);
