@@ -1,7 +1,7 @@
 // Codes cut in two (paper 3.3): values that are stored as columns, and the rest, which follows from the columns, from
 // what changes and from parameters. Nothing is re-associated, so the rest yields the bits of the whole. Used for what
-// an edit changes (compress/split.h), for what lamps add to a node (pieces.h) and for what lights bring to a vertex of a
-// path (path/path_programs.h).
+// an edit changes (compress/split.h), for what lamps add to a node (pieces.h) and for what lights bring to a vertex
+// of a path (path/path_programs.h).
 #pragma once
 #include <span>
 #include <vector>

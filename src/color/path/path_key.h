@@ -17,8 +17,8 @@ namespace relook {
 ///   filter   the share of light that passes
 enum class PathPiece : std::uint8_t { surface, light, filter };
 
-/// Pieces with equal keys share a program and its parameters. `light` reads the same columns of all surfaces that differ
-/// in `gathers` and `children` alone, of which its key has none.
+/// Pieces with equal keys share a program and its parameters. `light` reads the same columns of all surfaces that
+/// differ in `gathers` and `children` alone, of which its key has none.
 struct PathKey {
   PathPiece piece = PathPiece::surface;
   MaterialId material;
