@@ -8,6 +8,7 @@
 
 #include "base/pool.h"
 #include "cache/residency/residency.h"
+#include "color/path/kept_terms.h"
 #include "frame/changed_pixels.h"
 #include "frame/image.h"
 #include "image/counters.h"
@@ -92,6 +93,11 @@ class StoredImage {
   [[nodiscard]] const TileRays& kept_rays(std::size_t tile) const { return kept_rays_[tile]; }
   /// Empty: forgets them. Not while they are leased.
   void keep_rays(std::size_t tile, TileRays rays);
+  /// Of the rays that are kept. Not while they are leased.
+  void forget_weights(std::size_t tile);
+  /// The same of terms for the next edit of parameters; PieceKind::kept_terms.
+  [[nodiscard]] const TileTerms& kept_terms(std::size_t tile) const { return kept_terms_[tile]; }
+  void keep_terms(std::size_t tile, TileTerms terms);
 
  private:
   [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }
@@ -100,6 +106,8 @@ class StoredImage {
   }
   void add_pieces();
   void add_derived();
+  template <class Piece>
+  void keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece, double seconds);
   [[nodiscard]] TileLayers::Planes planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
                                           TileLayers::Working& working);
   void note_layers(std::size_t tile);
@@ -122,6 +130,7 @@ class StoredImage {
   std::vector<std::uint8_t> has_been_composed_;  // by tile: from the sums as they are
   Pool<LayerWork> layer_work_;
   std::vector<TileRays> kept_rays_;              // by tile; of paths
+  std::vector<TileTerms> kept_terms_;            // likewise
   Residency& residency_;
   std::vector<LightId> lights_;
   PathIndex index_;

@@ -22,16 +22,39 @@ PieceHandler handler_of_derived(std::vector<Piece>& pieces) {
 void StoredImage::add_derived() {
   residency_.add_kind(PieceKind::light_layers, layers_.size(), handler_of_derived(layers_));
   residency_.add_kind(PieceKind::kept_rays, kept_rays_.size(), handler_of_derived(kept_rays_));
+  residency_.add_kind(PieceKind::kept_terms, kept_terms_.size(), handler_of_derived(kept_terms_));
+}
+
+template <class Piece>
+void StoredImage::keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece,
+                               double seconds) {
+  pieces[tile] = Piece();
+  if (residency_.is_watched()) residency_.forget(kind, tile);
+  if (piece.empty() || !residency_.is_worth_room(kind, tile, piece.bytes())) return;
+  pieces[tile] = std::move(piece);
+  residency_.set(kind, tile, pieces[tile].bytes(), seconds);
 }
 
 void StoredImage::keep_rays(std::size_t tile, TileRays rays) {
   constexpr double kSecondsPerRay = 1e-6;  // to expand it again
-  kept_rays_[tile] = TileRays();
-  if (residency_.is_watched()) residency_.forget(PieceKind::kept_rays, tile);
-  if (rays.empty() || !residency_.is_worth_room(PieceKind::kept_rays, tile, rays.bytes())) return;
-  kept_rays_[tile] = std::move(rays);
-  residency_.set(PieceKind::kept_rays, tile, kept_rays_[tile].bytes(),
-                 static_cast<double>(kept_rays_[tile].rays.size()) * kSecondsPerRay);
+  const double seconds = static_cast<double>(rays.rays.size()) * kSecondsPerRay;
+  keep_derived(PieceKind::kept_rays, tile, kept_rays_, std::move(rays), seconds);
+}
+
+void StoredImage::forget_weights(std::size_t tile) {
+  {
+    const auto lease = residency_.use(PieceKind::kept_rays, tile);
+    if (kept_rays_[tile].weights.empty()) return;
+  }
+  TileRays rays = std::move(kept_rays_[tile]);
+  rays.weights = {};
+  keep_rays(tile, std::move(rays));
+}
+
+void StoredImage::keep_terms(std::size_t tile, TileTerms terms) {
+  constexpr double kSecondsPerSample = 1e-5;  // to expand and shade it again
+  const double seconds = static_cast<double>(terms.samples) * kSecondsPerSample;
+  keep_derived(PieceKind::kept_terms, tile, kept_terms_, std::move(terms), seconds);
 }
 
 void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {

@@ -18,8 +18,16 @@
 
 namespace relook {
 
-enum class PieceKind : std::uint8_t { ray_trees, sample_colors, light_sums, light_layers, kept_rays, tunnels };
-inline constexpr std::size_t kPieceKinds = 6;
+enum class PieceKind : std::uint8_t {
+  ray_trees,
+  sample_colors,
+  light_sums,
+  light_layers,
+  kept_rays,
+  kept_terms,
+  tunnels
+};
+inline constexpr std::size_t kPieceKinds = 7;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
 [[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 

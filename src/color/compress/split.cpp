@@ -82,12 +82,8 @@ class Splitter {
 
   [[nodiscard]] bool is_changing(Value v, const LampChanges& of_lamp, const std::vector<bool>& changing) const {
     const Instruction& i = code_[v];
-    const auto slot = i.payload.slot();
+    if (reads_fields(i, leaves_.fields)) return true;
     switch (i.op) {
-      case Op::material_field:
-        return (leaves_.fields & mask_of(i.payload.field())) != 0;
-      case Op::slot_color:
-        return (leaves_.fields & color_mask_of(slot)) != 0;
       case Op::light_field:
         if (!is_color(i.payload.light_field())) return false;
         if (i.payload.light() == kLightAtHand) return of_lamp.lamp;
@@ -102,10 +98,6 @@ class Splitter {
         if (i.payload.input() == Input::sum) return split_.sums[i.payload.which()].changes;
         if (i.payload.input() != Input::tint) return false;
         return i.payload.which() == kPlaceAtHand ? of_lamp.tint : leaves_.tints.has(i.payload.which());
-      case Op::texture:
-      case Op::procedural_weight:
-        if ((leaves_.fields & mask_of(slot)) != 0) return true;
-        break;
       case Op::environment_map:
         if (leaves_.environment) return true;
         break;

@@ -81,6 +81,20 @@ class ColumnFinder {
 
 }  // namespace
 
+bool reads_fields(const Instruction& instruction, FieldMask fields) {
+  switch (instruction.op) {
+    case Op::material_field:
+      return (fields & mask_of(instruction.payload.field())) != 0;
+    case Op::slot_color:
+      return (fields & color_mask_of(instruction.payload.slot())) != 0;
+    case Op::texture:
+    case Op::procedural_weight:
+      return (fields & mask_of(instruction.payload.slot())) != 0;
+    default:
+      return false;
+  }
+}
+
 std::vector<Value> find_columns(const Code& code, const std::vector<bool>& uniform, const std::vector<bool>& changing,
                                 std::span<const Value> wanted) {
   return ColumnFinder(code, uniform, changing).find(wanted);

@@ -18,6 +18,8 @@ bool any_operand(const Instruction& instruction, const Test& test) {
   return false;
 }
 
+/// Does an instruction read one of these fields of the material itself, not through its operands?
+[[nodiscard]] bool reads_fields(const Instruction& instruction, FieldMask fields);
 /// The columns from which `wanted` follow, increasing. `uniform`: by value, find_uniform(code); `changing`: by value, no
 /// column may hold it; a value with a changing operand is one.
 [[nodiscard]] std::vector<Value> find_columns(const Code& code, const std::vector<bool>& uniform,

@@ -42,17 +42,18 @@ std::vector<bool> find_sample_values(const Code& code) {
 }
 
 /// The light piece comes first in the code of every program that it is in, so that its columns are the same in all.
-Kernel build_kernel(const Scene& scene, const MaterialStructure& structure, const PathKey& key) {
+PathProgram build_program(const Scene& scene, const MaterialStructure& structure, const PathKey& key) {
   ExpressionBuilder builder(scene, structure);
   std::vector<Value> light, columns;
   if (key.lit || key.piece == PathPiece::light) {
     light = add_piece(builder, light_key(key));
     columns = find_columns(builder.code(), find_uniform(builder.code()), find_sample_values(builder.code()), light);
   }
-  if (key.piece == PathPiece::light) return make_kernel(with_columns(builder.code(), columns), light);
+  if (key.piece == PathPiece::light)
+    return {builder.code(), light, make_kernel(with_columns(builder.code(), columns), light)};
   std::vector<Value> outputs = add_piece(builder, key);
   outputs.insert(outputs.end(), columns.begin(), columns.end());
-  return make_kernel(builder.code(), outputs);
+  return {builder.code(), outputs, make_kernel(builder.code(), outputs)};
 }
 
 }  // namespace
@@ -66,9 +67,19 @@ BoundPathProgram PathPrograms::get(const Scene& scene, const PathKey& key) {
   Shape shape{structure_of(scene.material(key.material)), key};
   shape.second.material = MaterialId::none();
   const std::unique_lock lock(mutex_);
-  auto& kernel = kernels_[shape];
-  if (!kernel) kernel = std::make_unique<const Kernel>(build_kernel(scene, shape.first, shape.second));
-  return bound_.try_emplace(key, BoundPathProgram{kernel.get(), key.material}).first->second;
+  auto& program = programs_[shape];
+  if (!program) program = std::make_shared<const PathProgram>(build_program(scene, shape.first, shape.second));
+  return bound_.try_emplace(key, BoundPathProgram{program, key.material}).first->second;
+}
+
+std::shared_ptr<const PathSplit> split(const PathProgram& program, FieldMask fields) {
+  const Code& code = program.code;
+  std::vector<bool> changing(code.size());
+  for (Value v = 0; v < code.size(); ++v)
+    changing[v] = reads_fields(code[v], fields) || any_operand(code[v], [&](Value operand) { return changing[operand]; });
+  const std::vector<Value> columns = find_columns(code, find_uniform(code), changing, program.outputs);
+  return std::make_shared<const PathSplit>(
+      PathSplit{make_kernel(code, columns), make_kernel(with_columns(code, columns), program.outputs)});
 }
 
 void PathPrograms::forget(MaterialId material) {

@@ -15,10 +15,22 @@
 
 namespace relook {
 
-/// A program and the material whose parameters its leaves read. Its outputs: red, green and blue of every column, then
-/// those that stand alone.
+/// Its outputs: red, green and blue of every column, then those that stand alone.
+struct PathProgram {
+  Code code;  // of `light` the whole of it, textures and all
+  std::vector<Value> outputs;
+  Kernel kernel;
+};
+
+/// A program cut in two by what an edit of some fields of its material does not change: columns, and the rest.
+struct PathSplit {
+  Kernel constants;  // outputs: the columns; reads hits, of `light` the terms, too
+  Kernel residual;   // reads columns as Op::column; outputs: the program's
+};
+
+/// A program and the material whose parameters its leaves read.
 struct BoundPathProgram {
-  const Kernel* kernel = nullptr;
+  std::shared_ptr<const PathProgram> program;
   MaterialId material;
 };
 
@@ -34,8 +46,11 @@ class PathPrograms {
 
   std::shared_mutex mutex_;
   std::map<PathKey, BoundPathProgram> bound_;
-  std::map<Shape, std::unique_ptr<const Kernel>> kernels_;
+  std::map<Shape, std::shared_ptr<const PathProgram>> programs_;
 };
+
+/// `fields`: none of kMappingMask, since where textures are looked up is in the columns.
+[[nodiscard]] std::shared_ptr<const PathSplit> split(const PathProgram& program, FieldMask fields);
 
 /// A sample of a light at a hit, weighted for each lobe.
 struct LightTerm {

@@ -1,22 +1,14 @@
 #include "color/path/path_shader.h"
 
 #include <algorithm>
-#include <unordered_map>
 
-#include "color/node_programs.h"
 #include "color/path/light_terms.h"
+#include "color/path/path_runner.h"
+#include "color/path/term_keeper.h"
 #include "trace/light/emission_source.h"
 
 namespace relook {
 namespace {
-
-/// A short form of PathKey that is cheap to make and compare.
-std::uint64_t signature_of(const PathKey& key) {
-  return std::uint64_t{key.material.index()} << 32 | std::uint64_t{key.children.bits()} << 8 |
-         (key.inside ? 1U : 0U) | (key.vertex_colors ? 2U : 0U) | (key.interface_only ? 4U : 0U) |
-         (key.gathers ? 8U : 0U) | static_cast<unsigned>(key.piece) << 4 | (key.blurs ? 128U : 0U) |
-         (key.lit ? 64U : 0U);
-}
 
 /// What the program of a hit says of it, beside its branches.
 struct HitColumns {
@@ -24,9 +16,8 @@ struct HitColumns {
   float coverage = 0;
 };
 
-Color from_lanes(const KernelRun<PathBatch>& run, std::size_t column, std::size_t lane) {
-  return {run.output(3 * column)[lane], run.output(3 * column + 1)[lane], run.output(3 * column + 2)[lane]};
-}
+/// The columns of a surface behind its branches.
+enum class OwnColumn : std::uint32_t { emission, ambient, unlit };
 
 /// What is multiplied by coverage counts so much.
 float surface_scale(const RayNode& node) { return node.coverage.sees_surface() ? node.coverage.scale() : 0.0F; }
@@ -36,7 +27,8 @@ bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 }  // namespace
 
 struct PathShader::Impl {
-  Impl(const ColorScene& s, PathPrograms& p, const SumPlaces& of_sums) : scene(s), programs(p), places(of_sums) {
+  Impl(const ColorScene& s, PathPrograms& programs, const SumPlaces& of_sums)
+      : scene(s), places(of_sums), runner(s, programs) {
     emission_of.resize(scene.scene().materials.size(), kNoNode);
     for (std::uint32_t place = 0; place < scene.light_order().size(); ++place) {
       const Light& light = scene.scene().light(scene.light_order()[place]);
@@ -46,23 +38,23 @@ struct PathShader::Impl {
     }
   }
 
-  void shade(const TreeBlock& trees, std::uint32_t samples, TermSign sign, TileSums& tile,
-             const Wanted& asked) {
+  void shade(const TreeBlock& trees, std::uint32_t samples, TermSign sign, TileSums& tile, const Wanted& asked,
+             TermKeeper* of_terms) {
     block = &trees;
     wanted = asked;
     samples_of_pixel = samples;
     sums = &tile;
     is_added = sign == TermSign::add;
+    keeper = of_terms;
     shade_filters();
-    if (wanted.weights.empty()) {
-      find_weights();
-    } else {
-      weights.assign(wanted.weights.begin(), wanted.weights.end());
-      columns.resize(weights.size());
-      open_shares.assign(weights.size(), 0);
-    }
+    find_weights();
     add_own_terms();
     add_light_terms();
+  }
+  void shade_and_keep(const TreeBlock& trees, std::uint32_t samples, TileSums& tile, const Wanted& asked,
+                      const ParameterSet& parameters, KeptTerms& kept) {
+    TermKeeper of_terms(scene, parameters, trees, kept);
+    shade(trees, samples, TermSign::add, tile, asked, &of_terms);
   }
   [[nodiscard]] std::span<const Color> found_weights() const { return weights; }
 
@@ -87,115 +79,103 @@ struct PathShader::Impl {
     return false;
   }
 
-  void put(std::uint32_t sum, const RayNode& node, const Color& term) {
+  void put(std::uint32_t sum, std::uint32_t i, const Color& term) {
     if (is_black(term)) return;
-    const std::uint32_t pixel = node.sample / samples_of_pixel;
     if (is_added)
-      sums->add(sum, pixel, term);
+      sums->add(sum, pixel_of(i), term);
     else
-      sums->subtract(sum, pixel, term);
+      sums->subtract(sum, pixel_of(i), term);
   }
+  [[nodiscard]] std::uint32_t pixel_of(std::uint32_t i) const { return block->nodes[i].sample / samples_of_pixel; }
 
-  /// Of the light at `place`, for unit light.
-  void put_light(std::uint32_t place, const RayNode& node, const Color& term) {
-    put(places.of_light[place], node, term * places.colors[place]);
+  /// What a node brings of unit light on the way to it.
+  void add(std::uint32_t sum, std::uint32_t i, const Color& unit) {
+    put(sum, i, weights[i] * unit);
+    if (keeper != nullptr) keeper->add(i, sum, pixel_of(i), unit);
   }
-
-  [[nodiscard]] PathKey key_of(PathPiece piece, ObjectId id, bool inside) const {
-    const RayObject& object = scene.object(id);
-    PathKey key;
-    key.piece = piece;
-    key.material = scene.scene().object(id).material;
-    key.inside = inside;
-    key.vertex_colors = !object.mesh->colors.empty();
-    key.interface_only = object.optics.volume && inside;
-    key.blurs = object.blurs;
-    return key;
+  /// The same of the light at `place`.
+  void add_light(std::uint32_t place, std::uint32_t i, const Color& unit) {
+    put(places.of_light[place], i, weights[i] * unit * places.colors[place]);
+    if (keeper != nullptr) keeper->add(i, places.of_light[place], pixel_of(i), unit);
   }
-  std::uint32_t number_of(const PathKey& key) {
-    const auto [it, is_new] = numbers.try_emplace(signature_of(key), static_cast<std::uint32_t>(bound.size()));
-    if (is_new) {
-      bound.push_back(programs.get(scene.scene(), key));
-      keys.push_back(key);
-    }
-    return it->second;
+  /// What a hit brings itself: a column of its surface, times `factor`.
+  void add_own(std::uint32_t sum, std::uint32_t i, OwnColumn column, const Color& value, const Color& factor,
+               const Color& color = {1, 1, 1}) {
+    const Color unit = value * factor;
+    put(sum, i, weights[i] * unit * color);
+    if (keeper != nullptr) keeper->add_own(i, sum, pixel_of(i), static_cast<std::uint32_t>(column), factor, unit);
   }
-
-  /// Runs the programs of batches over their hits, and calls done(run, key, hits of the run).
-  template <class Done>
-  void run(bool are_filters, std::span<const std::uint32_t> hits, std::span<const LightTerm> of_lights,
-           const Done& done) {
-    batches.for_each(batch_of, bound.size(), [&](std::size_t number, std::span<const std::uint32_t> chosen) {
-      batch_hits.clear();
-      batch_terms.clear();
-      for (const std::uint32_t i : chosen) {
-        batch_hits.push_back(hits[i]);
-        if (!of_lights.empty()) batch_terms.push_back(&of_lights[i]);
-      }
-      const PathBatch batch{scene, *block, are_filters, batch_hits, batch_terms};
-      const Parameters parameters{scene.scene(), bound[number].material};
-      KernelRun<PathBatch> kernel(*bound[number].kernel, parameters, batch, batch_hits.size(), scratch);
-      for (std::size_t first = 0; first < batch_hits.size(); first += kLanes) {
-        const std::size_t lanes = std::min(kLanes, batch_hits.size() - first);
-        kernel.run(first, lanes);
-        done(kernel, keys[number], chosen.subspan(first, lanes));
-      }
-    });
+  /// Does a node's light come to the eye, now or with other values of what is above?
+  [[nodiscard]] bool counts(std::uint32_t i) const {
+    return !is_black(weights[i]) || (keeper != nullptr && keeper->is_below(i));
   }
 
   void shade_filters() {
     if (block->filters.empty()) return;
     tints.resize(block->filters.size());
-    batch_of.clear();
-    all.clear();
+    runner.begin();
     for (std::uint32_t i = 0; i < block->filters.size(); ++i) {
-      all.push_back(i);
       const FilterNode& filter = block->filters[i];
-      batch_of.push_back(number_of(key_of(PathPiece::filter, filter.object, filter.point.inside)));
+      runner.add(i, runner.number_of(runner.key_of(PathPiece::filter, filter.object, filter.point.inside)));
     }
-    run(true, all, {}, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
-      for (std::size_t lane = 0; lane < chosen.size(); ++lane) tints[chosen[lane]] = from_lanes(kernel, 0, lane);
+    runner.run(*block, true, {}, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
+      for (std::size_t lane = 0; lane < chosen.size(); ++lane) tints[runner.item(chosen[lane])] = from_lanes(kernel, 0, lane);
     });
   }
 
   /// The weight of every ray, and what hits bring themselves; then what of unit light at each node comes to the eye.
+  /// Where weights are known, only what lit hits have for lights.
   void find_weights() {
     const std::vector<RayNode>& nodes = block->nodes;
+    const bool is_known = !wanted.weights.empty();
     weights.assign(nodes.size(), Color(1, 1, 1));
     columns.resize(nodes.size());
     lit_columns.clear();
     first_lit_column.resize(nodes.size());
-    batch_of.clear();
-    all.clear();
+    runner.begin();
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       if (nodes[i].object.is_none()) continue;
-      all.push_back(i);
-      PathKey key = key_of(PathPiece::surface, nodes[i].object, nodes[i].point.inside);
-      key.gathers = nodes[i].ray.path.gathers;
-      key.children = children_of(nodes[i]);
+      PathKey key = runner.key_of(PathPiece::surface, nodes[i].object, nodes[i].point.inside);
       key.lit = is_lit(nodes[i]);
-      batch_of.push_back(number_of(key));
+      if (is_known && !key.lit) continue;
+      key.gathers = nodes[i].ray.path.gathers;
+      if (!is_known) key.children = children_of(nodes[i]);
+      runner.add(i, runner.number_of(key));
     }
-    run(false, all, {}, [&](const auto& kernel, const PathKey& key, std::span<const std::uint32_t> chosen) {
-      std::size_t column = 0;
-      for (std::size_t b = 0; b < kBranches; ++b) {
-        if (!key.children.has(static_cast<Branch>(b))) continue;
-        for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
-          const RayNode& node = nodes[all[chosen[lane]]];
-          weights[node.child[b]] = from_lanes(kernel, column, lane) * node.coverage.scale();
-        }
-        ++column;
-      }
-      for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
-        const float scale = surface_scale(nodes[all[chosen[lane]]]);
-        columns[all[chosen[lane]]] = {from_lanes(kernel, column, lane) * scale,
-                                      from_lanes(kernel, column + 1, lane) * scale,
-                                      from_lanes(kernel, column + 2, lane) * scale,
-                                      kernel.output(3 * (column + 3))[lane]};
-      }
-      if (key.lit) keep_lit_columns(kernel, 3 * (column + 4), chosen);
+    runner.run(*block, false, {}, [&](const auto& kernel, const PathKey& key, std::span<const std::uint32_t> chosen) {
+      keep_surface(kernel, key, chosen);
     });
     open_shares.assign(nodes.size(), 0);
+    if (is_known)
+      std::ranges::copy(wanted.weights, weights.begin());
+    else
+      multiply_weights();
+  }
+
+  void keep_surface(const KernelRun<PathBatch>& kernel, const PathKey& key, std::span<const std::uint32_t> chosen) {
+    const std::vector<RayNode>& nodes = block->nodes;
+    std::size_t column = 0;
+    for (std::size_t b = 0; b < kBranches; ++b) {
+      if (!key.children.has(static_cast<Branch>(b))) continue;
+      for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+        const RayNode& node = nodes[runner.item(chosen[lane])];
+        weights[node.child[b]] = from_lanes(kernel, column, lane) * node.coverage.scale();
+      }
+      ++column;
+    }
+    for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+      const std::uint32_t i = runner.item(chosen[lane]);
+      const float scale = surface_scale(nodes[i]);
+      columns[i] = {from_lanes(kernel, column, lane) * scale, from_lanes(kernel, column + 1, lane) * scale,
+                    from_lanes(kernel, column + 2, lane) * scale, kernel.output(3 * (column + 3))[lane]};
+    }
+    if (key.lit) keep_lit_columns(kernel, 3 * (column + 4), chosen);
+  }
+
+  void multiply_weights() {
+    const std::vector<RayNode>& nodes = block->nodes;
+    std::vector<Color> steps;
+    if (keeper != nullptr) steps = weights;
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       const RayNode& node = nodes[i];
       if (node.parent == kNoNode) {
@@ -206,13 +186,16 @@ struct PathShader::Impl {
       if (node.ray.branch == Branch::transparency)
         open_shares[i] = open_shares[node.parent] * (1.0F - columns[node.parent].coverage);
     }
+    if (keeper == nullptr) return;
+    keeper->begin(steps, weights);
+    keeper->keep_columns(runner);
   }
 
   /// What a program yields for lights, from its output `first` on.
   void keep_lit_columns(const KernelRun<PathBatch>& kernel, std::size_t first, std::span<const std::uint32_t> chosen) {
     const std::size_t count = kernel.outputs() - first, start = lit_columns.size();
     lit_columns.resize(start + count * chosen.size());
-    for (std::size_t lane = 0; lane < chosen.size(); ++lane) first_lit_column[all[chosen[lane]]] = start + lane * count;
+    for (std::size_t lane = 0; lane < chosen.size(); ++lane) first_lit_column[runner.item(chosen[lane])] = start + lane * count;
     for (std::size_t k = 0; k < count; ++k) {
       const float* from = kernel.output(first + k);
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) lit_columns[start + lane * count + k] = from[lane];
@@ -223,7 +206,7 @@ struct PathShader::Impl {
     for (std::uint32_t i = 0; i < block->nodes.size(); ++i) {
       const RayNode& node = block->nodes[i];
       if (is_whole(node) && !node.object.is_none() && open_shares[i] > 0) add_coverage(node, i);
-      if (is_black(weights[i])) continue;
+      if (!counts(i)) continue;
       for (const std::uint32_t place : shapes) add_crossed(node, i, place);
       if (node.object.is_none())
         add_surroundings(node, i);
@@ -244,25 +227,25 @@ struct PathShader::Impl {
   void add_crossed(const RayNode& node, std::uint32_t i, std::uint32_t place) {
     const Light& light = scene.scene().light(scene.light_order()[place]);
     if (!is_light_wanted(place, node) || !may_meet(node, scene.light(place), light)) return;
-    if (const auto radiance = crossed(node, scene.light(place), light)) put_light(place, node, weights[i] * *radiance);
+    if (const auto radiance = crossed(node, scene.light(place), light)) add_light(place, i, Color(*radiance));
   }
 
   /// Of a ray that leaves the scene.
   void add_surroundings(const RayNode& node, std::uint32_t i) {
     const PathState& path = node.ray.path;
     if (path.is_eye && scene.scene().environment.background) {
-      if (is_wanted(places.background, node)) put(places.background, node, weights[i] * background(node.ray.direction));
+      if (is_wanted(places.background, node)) add(places.background, i, background(node.ray.direction));
       return;
     }
     const RayLight& light = scene.light(suns);
     if (!is_wanted(places.sky, node) && !is_light_wanted(suns, node)) return;
     const Direction way = to_image(node.ray.direction, light.sine, light.cosine);
     const EnvironmentLight::Parts parts = scene.environment()->parts(way);
-    if (is_wanted(places.sky, node)) put(places.sky, node, weights[i] * parts.sky);
+    if (is_wanted(places.sky, node)) add(places.sky, i, parts.sky);
     if (is_black(parts.suns) || !is_light_wanted(suns, node)) return;
     if (!may_meet(node, light, scene.scene().light(scene.light_order()[suns]))) return;
     const float weight = path.density > 0 ? met_weight(node, light, scene.environment()->density(way)) : 1.0F;
-    put_light(suns, node, weights[i] * parts.suns * weight);
+    add_light(suns, i, parts.suns * weight);
   }
 
   /// Radiance for unit tint.
@@ -277,8 +260,9 @@ struct PathShader::Impl {
 
   void add_hit(const RayNode& node, std::uint32_t i) {
     const HitColumns& own = columns[i];
-    if (is_wanted(places.ambient, node)) put(places.ambient, node, weights[i] * own.ambient);
-    if (is_wanted(places.unlit, node)) put(places.unlit, node, weights[i] * own.unlit);
+    const Color one(1, 1, 1);
+    if (is_wanted(places.ambient, node)) add_own(places.ambient, i, OwnColumn::ambient, own.ambient, one);
+    if (is_wanted(places.unlit, node)) add_own(places.unlit, i, OwnColumn::unlit, own.unlit, one);
     const std::uint32_t place = emission_of[scene.scene().object(node.object).material.index()];
     if (place == kNoNode || !is_light_wanted(place, node)) return;
     const Light& light = scene.scene().light(scene.light_order()[place]);
@@ -289,7 +273,8 @@ struct PathShader::Impl {
     if (path.density > 0)
       weight = met_weight(node, source, source.emission->density(node.object, node.hit.primitive, node.ray.origin,
                                                                  node.ray.direction, node.length));
-    put_light(place, node, weights[i] * own.emission * shown(light.emission, node) * weight);
+    add_own(places.of_light[place], i, OwnColumn::emission, own.emission, shown(light.emission, node) * weight,
+            places.colors[place]);
   }
 
   /// The image of an emitting surface: as sharp as its light's samples see it, but to the eye.
@@ -303,31 +288,59 @@ struct PathShader::Impl {
 
   void add_light_terms() {
     terms.clear();
-    batch_of.clear();
-    all.clear();
+    runner.begin();
     for (std::uint32_t i = 0; i < block->nodes.size(); ++i) {
       const RayNode& node = block->nodes[i];
-      if (node.object.is_none() || is_black(weights[i])) continue;
+      if (node.object.is_none() || !counts(i)) continue;
       std::uint32_t program = kNoNode;
       for (std::uint32_t place = 0; place < places.of_light.size(); ++place) {
         if (!is_lit_by(place, node)) continue;
         auto term = light_term(scene, *block, i, place);
         if (!term) continue;
         term->columns = lit_columns.data() + first_lit_column[i];
-        all.push_back(i);
         terms.push_back(*term);
-        if (program == kNoNode) program = number_of(key_of(PathPiece::light, node.object, node.point.inside));
-        batch_of.push_back(program);
+        if (program == kNoNode)
+          program = runner.number_of(runner.key_of(PathPiece::light, node.object, node.point.inside));
+        runner.add(i, program);
       }
     }
-    run(false, all, terms, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
+    runner.run(*block, false, terms, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
         const LightTerm& term = terms[chosen[lane]];
-        const RayNode& node = block->nodes[term.node];
-        const Color light = tinted(from_lanes(kernel, 0, lane), block->lights[node.first_light + term.light]);
-        put_light(term.light, node, weights[term.node] * (light * surface_scale(node)));
+        const Color unit = tinted(from_lanes(kernel, 0, lane), link_of(term)) * surface_scale(block->nodes[term.node]);
+        put(places.of_light[term.light], term.node, weights[term.node] * unit * places.colors[term.light]);
+        if (keeper != nullptr && !keeper->is_source(term.node))
+          keeper->add(term.node, places.of_light[term.light], pixel_of(term.node), unit);
       }
     });
+    if (keeper != nullptr) keep_lit_terms();
+  }
+  [[nodiscard]] const LightLink& link_of(const LightTerm& term) const {
+    return block->lights[block->nodes[term.node].first_light + term.light];
+  }
+
+  /// Those at hits whose material changes. The list of terms is at hand yet.
+  void keep_lit_terms() {
+    std::vector<LightTerm> of_sources;
+    runner.begin();
+    for (const LightTerm& term : terms) {
+      if (!keeper->is_source(term.node)) continue;
+      const RayNode& node = block->nodes[term.node];
+      of_sources.push_back(term);
+      runner.add(term.node, runner.number_of(runner.key_of(PathPiece::light, node.object, node.point.inside)));
+    }
+    runner.for_each_batch(*block, false, of_sources,
+                          [&](std::uint32_t number, const PathBatch& batch, std::span<const std::uint32_t> chosen) {
+                            std::vector<TermPlace> term_places;
+                            std::vector<const LightLink*> links;
+                            for (const std::uint32_t k : chosen) {
+                              const LightTerm& term = of_sources[k];
+                              term_places.push_back(
+                                  keeper->place_of(term.node, places.of_light[term.light], pixel_of(term.node)));
+                              links.push_back(&link_of(term));
+                            }
+                            keeper->add_lit(number, batch, term_places, links, tints, runner);
+                          });
   }
 
   [[nodiscard]] Color tinted(Color light, const LightLink& link) const {
@@ -337,7 +350,6 @@ struct PathShader::Impl {
   }
 
   const ColorScene& scene;
-  PathPrograms& programs;
   const SumPlaces& places;
   std::vector<std::uint32_t> emission_of;  // by MaterialId: place in the light order; kNoNode: it emits nothing
   std::vector<std::uint32_t> shapes;       // places of lights with a shape
@@ -348,20 +360,15 @@ struct PathShader::Impl {
   TileSums* sums = nullptr;
   bool is_added = true;
   Wanted wanted;
+  TermKeeper* keeper = nullptr;
 
-  std::unordered_map<std::uint64_t, std::uint32_t> numbers;  // by signature: of a program
-  std::vector<BoundPathProgram> bound;
-  std::vector<PathKey> keys;
-  Batches batches;
-  std::vector<std::uint32_t> batch_of, all, batch_hits;
-  std::vector<const LightTerm*> batch_terms;
+  PathRunner runner;
   std::vector<LightTerm> terms;
   std::vector<Color> weights, tints;  // by node, by filter
   std::vector<HitColumns> columns;    // by node
   std::vector<float> lit_columns;     // of lit nodes, those of a node in a row: what programs of lights read
   std::vector<std::size_t> first_lit_column;  // by node, if it is lit
   std::vector<float> open_shares;     // by node: what of the eye's straight ray gets there
-  Scratch scratch;
 };
 
 PathShader::PathShader(const ColorScene& scene, PathPrograms& programs, const SumPlaces& places)
@@ -370,7 +377,12 @@ PathShader::~PathShader() = default;
 
 void PathShader::shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums,
                        const Wanted& wanted) {
-  impl_->shade(block, samples, sign, sums, wanted);
+  impl_->shade(block, samples, sign, sums, wanted, nullptr);
+}
+
+void PathShader::shade_and_keep(const TreeBlock& block, std::uint32_t samples, TileSums& sums, const Wanted& wanted,
+                                const ParameterSet& parameters, KeptTerms& kept) {
+  impl_->shade_and_keep(block, samples, sums, wanted, parameters, kept);
 }
 
 std::span<const Color> PathShader::weights() const { return impl_->found_weights(); }

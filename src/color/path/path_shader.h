@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "color/path/kept_terms.h"
 #include "color/path/path_programs.h"
 #include "color/path/sum_places.h"
 #include "light/sums/tile_sums.h"
@@ -28,6 +29,11 @@ class PathShader {
   };
   /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel.
   void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums, const Wanted& wanted = {});
+  /// The same, added, and what `kept` is for, all empty before. Requires: all terms of everything are wanted; no lights
+  /// share a sum; the parameters are of materials that are opaque, cast no tints and have no fields of kMappingMask among
+  /// them.
+  void shade_and_keep(const TreeBlock& block, std::uint32_t samples, TileSums& sums, const Wanted& wanted,
+                      const ParameterSet& parameters, KeptTerms& kept);
   /// By node of the block that was shaded last: what of unit light there comes to the eye.
   [[nodiscard]] std::span<const Color> weights() const;
 

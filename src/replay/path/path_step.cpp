@@ -102,6 +102,8 @@ void count(const PathTileResult& tile, Counters& counters) {
   counters.object_rays += tile.counters.object_rays;
 }
 
+constexpr std::size_t kMostKeptSums = 0xFFFF;  // that TermPlace can tell
+
 /// Brings trees and sums up to date, tile by tile.
 class PathUpdate {
  public:
@@ -123,9 +125,12 @@ class PathUpdate {
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
     Pool<PathShader> shaders_before, shaders_after;
     PathPass pass{change_,        stored_.image(), programs_before, programs_after, grow_before, grow_after,
-                  shaders_before, shaders_after,   {},              {},             {},
-                  {}};
+                  shaders_before, shaders_after,   {},              {},             {},          {},
+                  false,          RayUse::none,    {},              false};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
+    if (pass.ray_use == RayUse::colors) pass.term_parameters = term_parameters();
+    pass.keeps_terms = pass.term_parameters && parts_.last_colors.contains(*pass.term_parameters);
+    parts_.last_colors = pass.term_parameters.value_or(ParameterSet());
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
     std::vector<NewSamples> fresh;
@@ -145,15 +150,44 @@ class PathUpdate {
     return parts_.residency.is_limited() || !std::ranges::all_of(stored_.image().trees, has_hits);
   }
 
+  /// Of an edit of the colours of opaque materials that tint no light; else none.
+  [[nodiscard]] std::optional<ParameterSet> term_parameters() const {
+    const ColorChange& colors = change_.step.colors;
+    const SumPlaces sums(parts_.state.scene(), change_.sums);
+    if (!is_compressible(colors) || !colors.restructured.empty() || change_.shaded.empty() ||
+        std::ranges::find(sums.shares, std::uint8_t{1}) != sums.shares.end() || sums.count > kMostKeptSums)
+      return std::nullopt;
+    ParameterSet parameters;
+    parameters.materials = colors.parameters.materials;
+    for (std::uint32_t object = 0; object < parts_.state.scene().objects.size(); ++object) {
+      const SurfaceOptics& optics = parts_.rays.object(ObjectId(object)).optics;
+      if (parameters.fields_of(parts_.state.scene().objects[object].material) != 0 &&
+          (optics.transparent || optics.passes_light))
+        return std::nullopt;
+    }
+    return parameters;
+  }
+  [[nodiscard]] static bool may_recolor(const PathPass& pass, const TileTerms& terms) {
+    return pass.term_parameters && !terms.empty() && terms.parameters.contains(*pass.term_parameters);
+  }
+
   void update(const PathPass& pass, std::size_t tile, PathTileResult& result) {
     const auto trees = parts_.residency.use(PieceKind::ray_trees, tile);
     {
       const auto sums = parts_.residency.use(PieceKind::light_sums, tile);
       const auto rays = parts_.residency.use(PieceKind::kept_rays, tile);
-      result = has_hits(stored_.image().trees[tile])
-                   ? update_path_tile(pass, tile, stored_.image().light_sums[tile], stored_.kept_rays(tile))
-                   : trace_path_tile(pass, tile);
+      const auto terms = parts_.residency.use(PieceKind::kept_terms, tile);
+      const PackedSums& sums_before = stored_.image().light_sums[tile];
+      if (may_recolor(pass, stored_.kept_terms(tile)))
+        result = recolor_path_tile(pass, tile, sums_before, stored_.kept_terms(tile));
+      else if (has_hits(stored_.image().trees[tile]))
+        result = update_path_tile(pass, tile, sums_before, stored_.kept_rays(tile));
+      else
+        result = trace_path_tile(pass, tile);
     }
+    if (result.terms) stored_.keep_terms(tile, std::move(*result.terms));
+    if (result.has_other_weights) stored_.forget_weights(tile);
+    result.terms.reset();
     if (result.rays) stored_.keep_rays(tile, std::move(*result.rays));
     result.rays.reset();
     stored_.keep_hits(result.fresh);

@@ -63,6 +63,7 @@ class PathTileUpdater {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
     if (recorder_.has_news()) result_.rays = recorder_.take();
+    if (pass_.keeps_terms || result_.samples > 0) result_.terms = std::move(terms_);
     const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
                               !std::ranges::is_sorted(pass_.change.old_of_new);
     if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
@@ -82,6 +83,7 @@ class PathTileUpdater {
 
   PathTileResult trace() {
     result_.rays = TileRays();
+    result_.terms = TileTerms();
     std::vector<SpawnedRay> rays;
     const auto count = static_cast<std::uint32_t>(trees_.paths.size());
     ChunkSize chunk(pass_.grow_after.layout().lights);
@@ -219,7 +221,7 @@ class PathTileUpdater {
   void shade(Batch& batch, PathShader& shader, TermSign sign, TileSums& terms, PathShader::Wanted wanted) {
     if (batch.roots.empty()) return;
     wanted.weights = batch.weights;
-    shader.shade(batch.block, samples_, sign, terms, wanted);
+    shade_block(batch, shader, sign, terms, wanted);
     for (std::size_t k = 0; k < batch.is_recorded.size(); ++k)
       if (batch.is_recorded[k] != 0) recorder_.add_weights(batch.block, batch.roots[k], shader.weights());
     batch.clear();
@@ -231,6 +233,13 @@ class PathTileUpdater {
       shader_before_->shade(changed_.block, samples_, TermSign::subtract, old_terms_, taken);
     shade(old_, *shader_before_, TermSign::subtract, old_terms_, taken);
     shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_, {}});
+  }
+  void shade_block(const Batch& batch, PathShader& shader, TermSign sign, TileSums& terms,
+                   const PathShader::Wanted& wanted) {
+    if (!pass_.keeps_terms || &batch != &changed_) return shader.shade(batch.block, samples_, sign, terms, wanted);
+    terms_.parameters = *pass_.term_parameters;
+    terms_.samples += batch.roots.size();
+    shader.shade_and_keep(batch.block, samples_, terms, wanted, terms_.parameters, terms_.blocks.emplace_back());
   }
 
   const PathPass& pass_;
@@ -252,6 +261,7 @@ class PathTileUpdater {
   Batch changed_;  // the same as they are now, and those of which only some lights are worked out afresh
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
   std::vector<std::uint32_t> words_;
+  TileTerms terms_;
   PathTileResult result_;
 };
 
@@ -259,6 +269,22 @@ class PathTileUpdater {
 
 PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums, const TileRays& rays) {
   return PathTileUpdater(pass, tile, rays).update(sums);
+}
+
+PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
+                                 const TileTerms& terms) {
+  PathTileResult result;
+  result.fresh.tile = tile;
+  result.sums = sums;
+  result.samples = terms.samples;
+  if (terms.samples == 0) return result;
+  TileSums all = sums.unpack();
+  TermMemory memory;
+  for (const KeptTerms& block : terms.blocks)
+    exchange_terms(block, pass.before.scene().scene(), pass.after.scene().scene(), memory, all);
+  result.sums = PackedSums::pack(all);
+  result.has_changed = result.has_other_weights = true;
+  return result;
 }
 
 PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile) {

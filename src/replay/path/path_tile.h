@@ -37,11 +37,15 @@ struct PathPass {
   std::vector<std::uint8_t> named_path;    // by path: it names an object with a flag; empty: none does
   bool updates_all = false;                // every path is in update_path
   RayUse ray_use = RayUse::none;
+  std::optional<ParameterSet> term_parameters;  // those of an edit for which terms may be kept
+  bool keeps_terms = false;                     // they are to be kept now
 };
 
 struct PathTileResult {
   NewSamples fresh;              // trees alone
   std::optional<TileRays> rays;  // to be kept from now on; none: as before
+  std::optional<TileTerms> terms;  // likewise
+  bool has_other_weights = false;  // than those that are kept with rays
   PackedSums sums;   // of the tile as it is now
   bool has_changed = false;
   std::uint64_t samples = 0;  // whose terms have been worked out
@@ -51,6 +55,9 @@ struct PathTileResult {
 /// `sums`, `rays`: of the tile before the edit. Requires: the tile's hits are there.
 [[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
                                               const TileRays& rays);
+/// The same of a tile whose terms are kept for what the edit changes.
+[[nodiscard]] PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
+                                               const TileTerms& terms);
 /// The same of a tile whose hits are not: all is traced again.
 [[nodiscard]] PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile);
 
