@@ -28,8 +28,10 @@ void StoredImage::add_derived() {
 template <class Piece>
 void StoredImage::keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece,
                                double seconds) {
-  pieces[tile] = Piece();
-  if (residency_.is_watched()) residency_.forget(kind, tile);
+  if (residency_.is_watched())
+    residency_.forget(kind, tile);
+  else
+    pieces[tile] = Piece();
   if (piece.empty() || !residency_.is_worth_room(kind, tile, piece.bytes())) return;
   pieces[tile] = std::move(piece);
   residency_.set(kind, tile, pieces[tile].bytes(), seconds);
@@ -42,11 +44,12 @@ void StoredImage::keep_rays(std::size_t tile, TileRays rays) {
 }
 
 void StoredImage::forget_weights(std::size_t tile) {
+  TileRays rays;
   {
     const auto lease = residency_.use(PieceKind::kept_rays, tile);
     if (kept_rays_[tile].weights.empty()) return;
+    rays = std::exchange(kept_rays_[tile], TileRays());
   }
-  TileRays rays = std::move(kept_rays_[tile]);
   rays.weights = {};
   keep_rays(tile, std::move(rays));
 }
