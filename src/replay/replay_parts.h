@@ -42,7 +42,6 @@ struct ReplayParts {
   ProgramTable programs;
   KeptSelection selection{stored.samples()};  // a byte a sample
   ColorTreeStore color_trees;
-  ParameterSet last_colors;  // of paths: those of the last step that changed colours of materials alone
   std::unique_ptr<SceneLevel> level;  // null until a step first needs rays
 
  private:

@@ -48,12 +48,12 @@ TEST(PathPrograms, a_lit_vertex_looks_up_each_texture_once_for_all_lights) {
     PathPrograms programs;
     for_each_side(state.scene(), [&](PathKey key) {
       key.lit = true;
-      const Kernel& surface = *programs.get(state.scene(), key).kernel;
+      const Kernel& surface = programs.get(state.scene(), key).program->kernel;
       PathKey of_light = key;
       of_light.piece = PathPiece::light;
       of_light.lit = false;
       of_light.children = {};
-      const Kernel& light = *programs.get(state.scene(), of_light).kernel;
+      const Kernel& light = programs.get(state.scene(), of_light).program->kernel;
       for (const Op op : {Op::texture, Op::procedural_weight, Op::coordinates, Op::tangent_frame}) {
         EXPECT_TRUE(lookups(light, op).empty());
         for (const auto& [slot, times] : lookups(surface, op)) {
@@ -73,17 +73,17 @@ TEST(PathPrograms, all_surfaces_of_a_side_yield_the_columns_that_lights_read) {
     for_each_side(state.scene(), [&](const PathKey& side) {
       PathKey of_light = side;
       of_light.piece = PathPiece::light;
-      const std::size_t read = columns_read(*programs.get(state.scene(), of_light).kernel);
+      const std::size_t read = columns_read(programs.get(state.scene(), of_light).program->kernel);
       for (const bool gathers : {false, true})
         for (const Branch child : {Branch::transparency, Branch::reflection, Branch::diffuse}) {
           PathKey key = side;
           key.gathers = gathers;
           const bool is_unlit = state.scene().material(key.material).model == IlluminationModel::unlit;
           if (!is_unlit || child == Branch::transparency) key.children.add(child);
-          const std::size_t without = programs.get(state.scene(), key).kernel->outputs.size();
+          const std::size_t without = programs.get(state.scene(), key).program->kernel.outputs.size();
           EXPECT_EQ(without, 3 * (key.children.size() + 4));
           key.lit = true;
-          EXPECT_EQ(programs.get(state.scene(), key).kernel->outputs.size(), without + read);
+          EXPECT_EQ(programs.get(state.scene(), key).program->kernel.outputs.size(), without + read);
         }
     });
   }

@@ -51,10 +51,10 @@ struct PathShader::Impl {
     add_own_terms();
     add_light_terms();
   }
-  void shade_and_keep(const TreeBlock& trees, std::uint32_t samples, TileSums& tile, const Wanted& asked,
-                      const ParameterSet& parameters, KeptTerms& kept) {
+  void keep(const TreeBlock& trees, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept) {
     TermKeeper of_terms(scene, parameters, trees, kept);
-    shade(trees, samples, TermSign::add, tile, asked, &of_terms);
+    TileSums none;
+    shade(trees, samples, TermSign::add, none, {}, &of_terms);
   }
   [[nodiscard]] std::span<const Color> found_weights() const { return weights; }
 
@@ -80,7 +80,7 @@ struct PathShader::Impl {
   }
 
   void put(std::uint32_t sum, std::uint32_t i, const Color& term) {
-    if (is_black(term)) return;
+    if (keeper != nullptr || is_black(term)) return;
     if (is_added)
       sums->add(sum, pixel_of(i), term);
     else
@@ -205,7 +205,7 @@ struct PathShader::Impl {
   void add_own_terms() {
     for (std::uint32_t i = 0; i < block->nodes.size(); ++i) {
       const RayNode& node = block->nodes[i];
-      if (is_whole(node) && !node.object.is_none() && open_shares[i] > 0) add_coverage(node, i);
+      if (keeper == nullptr && is_whole(node) && !node.object.is_none() && open_shares[i] > 0) add_coverage(node, i);
       if (!counts(i)) continue;
       for (const std::uint32_t place : shapes) add_crossed(node, i, place);
       if (node.object.is_none())
@@ -261,8 +261,11 @@ struct PathShader::Impl {
   void add_hit(const RayNode& node, std::uint32_t i) {
     const HitColumns& own = columns[i];
     const Color one(1, 1, 1);
-    if (is_wanted(places.ambient, node)) add_own(places.ambient, i, OwnColumn::ambient, own.ambient, one);
-    if (is_wanted(places.unlit, node)) add_own(places.unlit, i, OwnColumn::unlit, own.unlit, one);
+    if (!node.ray.path.gathers && is_wanted(places.ambient, node))
+      add_own(places.ambient, i, OwnColumn::ambient, own.ambient, one);
+    const Material& material = scene.scene().material(scene.scene().object(node.object).material);
+    if (material.model == IlluminationModel::unlit && is_wanted(places.unlit, node))
+      add_own(places.unlit, i, OwnColumn::unlit, own.unlit, one);
     const std::uint32_t place = emission_of[scene.scene().object(node.object).material.index()];
     if (place == kNoNode || !is_light_wanted(place, node)) return;
     const Light& light = scene.scene().light(scene.light_order()[place]);
@@ -380,9 +383,8 @@ void PathShader::shade(const TreeBlock& block, std::uint32_t samples, TermSign s
   impl_->shade(block, samples, sign, sums, wanted, nullptr);
 }
 
-void PathShader::shade_and_keep(const TreeBlock& block, std::uint32_t samples, TileSums& sums, const Wanted& wanted,
-                                const ParameterSet& parameters, KeptTerms& kept) {
-  impl_->shade_and_keep(block, samples, sums, wanted, parameters, kept);
+void PathShader::keep(const TreeBlock& block, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept) {
+  impl_->keep(block, samples, parameters, kept);
 }
 
 std::span<const Color> PathShader::weights() const { return impl_->found_weights(); }

@@ -1,6 +1,7 @@
 #include "replay/path/path_step.h"
 
 #include <algorithm>
+#include <atomic>
 
 #include "base/parallel.h"
 #include "edit/apply.h"
@@ -129,8 +130,8 @@ class PathUpdate {
                   false,          RayUse::none,    {},              false};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     if (pass.ray_use == RayUse::colors) pass.term_parameters = term_parameters();
-    pass.keeps_terms = pass.term_parameters && parts_.last_colors.contains(*pass.term_parameters);
-    parts_.last_colors = pass.term_parameters.value_or(ParameterSet());
+    pass.keeps_terms = pass.term_parameters && parts_.color_trees.most_samples() > 0 &&
+                       parts_.color_trees.set_for(*pass.term_parameters) != nullptr;
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
     std::vector<NewSamples> fresh;
@@ -167,6 +168,10 @@ class PathUpdate {
     }
     return parameters;
   }
+  /// Terms are kept of no more samples than colour trees may be (m_c in the paper, 4.1).
+  [[nodiscard]] bool takes_room(std::uint64_t samples) {
+    return kept_samples_.fetch_add(samples) + samples <= parts_.color_trees.most_samples();
+  }
   [[nodiscard]] static bool may_recolor(const PathPass& pass, const TileTerms& terms) {
     return pass.term_parameters && !terms.empty() && terms.parameters.contains(*pass.term_parameters);
   }
@@ -185,6 +190,7 @@ class PathUpdate {
       else
         result = trace_path_tile(pass, tile);
     }
+    if (result.terms && !takes_room(result.terms->samples)) result.terms = TileTerms();
     if (result.terms) stored_.keep_terms(tile, std::move(*result.terms));
     if (result.has_other_weights) stored_.forget_weights(tile);
     result.terms.reset();
@@ -198,6 +204,7 @@ class PathUpdate {
   ReplayParts& parts_;
   StoredImage& stored_;
   PathChange& change_;
+  std::atomic<std::uint64_t> kept_samples_ = 0;  // whose terms are kept in this step
 };
 
 /// `tiles`: by tile, whether its pixels may be others.

@@ -57,13 +57,14 @@ class PathTileUpdater {
         takes_or_shades_(takes_ || !pass.change.shaded.empty() || !pass.change.step.colors.reassigned.empty()),
         misses_are_dark_(are_misses_dark()) {
     result_.fresh.tile = tile;
+    if (pass.keeps_terms) terms_.parameters = *pass.term_parameters;
   }
 
   PathTileResult update(const PackedSums& sums) {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
     if (recorder_.has_news()) result_.rays = recorder_.take();
-    if (pass_.keeps_terms || result_.samples > 0) result_.terms = std::move(terms_);
+    if (pass_.keeps_terms || result_.samples > 0) result_.terms = pass_.keeps_terms ? std::move(terms_) : TileTerms();
     const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
                               !std::ranges::is_sorted(pass_.change.old_of_new);
     if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
@@ -221,25 +222,34 @@ class PathTileUpdater {
   void shade(Batch& batch, PathShader& shader, TermSign sign, TileSums& terms, PathShader::Wanted wanted) {
     if (batch.roots.empty()) return;
     wanted.weights = batch.weights;
-    shade_block(batch, shader, sign, terms, wanted);
-    for (std::size_t k = 0; k < batch.is_recorded.size(); ++k)
-      if (batch.is_recorded[k] != 0) recorder_.add_weights(batch.block, batch.roots[k], shader.weights());
+    shader.shade(batch.block, samples_, sign, terms, wanted);
+    note_weights(batch, shader);
     batch.clear();
   }
   void flush() {
     stop_if_interrupted();
+    if (pass_.term_parameters) return exchange();
     const PathShader::Wanted taken{no_sums_, pass_.change.taken, whole_, {}};
     if (is_shared_ && takes_or_shades_ && !changed_.roots.empty())
       shader_before_->shade(changed_.block, samples_, TermSign::subtract, old_terms_, taken);
     shade(old_, *shader_before_, TermSign::subtract, old_terms_, taken);
     shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_, {}});
   }
-  void shade_block(const Batch& batch, PathShader& shader, TermSign sign, TileSums& terms,
-                   const PathShader::Wanted& wanted) {
-    if (!pass_.keeps_terms || &batch != &changed_) return shader.shade(batch.block, samples_, sign, terms, wanted);
-    terms_.parameters = *pass_.term_parameters;
-    terms_.samples += batch.roots.size();
-    shader.shade_and_keep(batch.block, samples_, terms, wanted, terms_.parameters, terms_.blocks.emplace_back());
+
+  /// What does not change of terms is worked out once for both, and kept.
+  void exchange() {
+    if (changed_.roots.empty()) return;
+    KeptTerms kept;
+    shader_after_->keep(changed_.block, samples_, *pass_.term_parameters, kept);
+    exchange_terms(kept, pass_.before.scene().scene(), pass_.after.scene().scene(), term_memory_, new_terms_);
+    note_weights(changed_, *shader_after_);
+    terms_.samples += changed_.roots.size();
+    if (pass_.keeps_terms) terms_.blocks.push_back(std::move(kept));
+    changed_.clear();
+  }
+  void note_weights(const Batch& batch, const PathShader& shader) {
+    for (std::size_t k = 0; k < batch.is_recorded.size(); ++k)
+      if (batch.is_recorded[k] != 0) recorder_.add_weights(batch.block, batch.roots[k], shader.weights());
   }
 
   const PathPass& pass_;
@@ -262,6 +272,7 @@ class PathTileUpdater {
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
   std::vector<std::uint32_t> words_;
   TileTerms terms_;
+  TermMemory term_memory_;
   PathTileResult result_;
 };
 

@@ -1,0 +1,196 @@
+// What is kept between steps of the path integrator: trees that are grown along kept rays are those that are expanded
+// with textures and point sets, and exchanged terms are those of trees that are shaded before and after an edit, bit for
+// bit.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "image/sampling.h"
+#include "image/tile_light.h"
+#include "path_checks.h"
+#include "replay/change.h"
+#include "trace/tree/pack.h"
+#include "trace/update/kept_rays.h"
+
+namespace relook {
+namespace {
+
+constexpr TestScene kScenes[] = {TestScene::lights, TestScene::spheres, TestScene::cards, TestScene::study};
+
+/// The trees of all samples of an image's first tile.
+struct Trees {
+  Trees(const SceneState& scene_state, const ViewOptions& of_view)
+      : state(scene_state), view(of_view), rays(state.scene()) {
+    image = preprocessed(state.scene(), view);
+    rect = tile_rect(0, image.frame.width, image.frame.height);
+    const PrimaryRays primaries(rays.camera(), view);
+    const GrowScene grow = grow_scene(rays, nullptr, view, 0);
+    GrowCounters counters;
+    for (std::uint32_t sample = 0; sample < image.trees[0].paths.size(); ++sample)
+      roots.push_back(expand_tree(grow, primaries.ray(rect, sample), sample, stored(sample), block, counters));
+  }
+  [[nodiscard]] StoredTree stored(std::uint32_t sample) const {
+    const TileTrees& trees = image.trees[0];
+    return {PathCursor(image.paths.words(trees.paths[sample]), {rays.light_order().size(), 0}), trees.hits_of(sample)};
+  }
+
+  const SceneState& state;
+  ViewOptions view;
+  ColorScene rays;
+  Image image;
+  TileRect rect;
+  TreeBlock block;
+  std::vector<std::uint32_t> roots;
+};
+
+ViewOptions deep_view() {
+  ViewOptions view = path_view(4);
+  view.diffuse_depth = 2;
+  return view;
+}
+
+void expect_same_ray(const SpawnedRay& a, const SpawnedRay& b) {
+  EXPECT_EQ(a.origin, b.origin);
+  EXPECT_EQ(a.direction, b.direction);
+  EXPECT_EQ(a.cone_width, b.cone_width);
+  EXPECT_EQ(a.cone_spread, b.cone_spread);
+  EXPECT_EQ(a.branch, b.branch);
+  EXPECT_EQ(a.channel, b.channel);
+  EXPECT_EQ(a.goes_on(), b.goes_on());
+  EXPECT_EQ(a.start, b.start);
+  EXPECT_EQ(a.end, b.end);
+  EXPECT_EQ(a.travelled, b.travelled);
+  EXPECT_EQ(a.travelled_slack, b.travelled_slack);
+  EXPECT_EQ(a.path.history, b.path.history);
+  EXPECT_EQ(a.path.from, b.path.from);
+  EXPECT_EQ(a.path.density, b.path.density);
+  EXPECT_EQ(a.path.alpha_floor, b.path.alpha_floor);
+  EXPECT_EQ(a.path.straight, b.path.straight);
+  const auto flags = [](const PathState& path) {
+    return std::array{path.is_first, path.is_eye, path.gathers, path.is_shut, path.is_wide, path.is_alone, path.has_lamps};
+  };
+  EXPECT_EQ(flags(a.path), flags(b.path));
+}
+
+void expect_same_lobes(const VertexLobes& a, const VertexLobes& b, const Direction& way) {
+  for (const Lobe lobe : {Lobe::diffuse, Lobe::specular, Lobe::coat, Lobe::transmission}) {
+    EXPECT_EQ(a.shares.of(lobe), b.shares.of(lobe));
+    EXPECT_EQ(a.density(lobe, way), b.density(lobe, way));
+    EXPECT_EQ(a.is_wide(lobe), b.is_wide(lobe));
+  }
+}
+
+class KeptRays : public testing::TestWithParam<TestScene> {};
+
+TEST_P(KeptRays, grow_the_trees_from_which_they_were_taken) {
+  const SceneState state = with_integrator(test_scene(GetParam(), 24, 18), Integrator::path);
+  const Trees trees(state, deep_view());
+  TileRays kept;
+  for (const std::uint32_t root : trees.roots) kept.append(trees.block, root);
+  const GrowScene grow = grow_scene(trees.rays, nullptr, trees.view, 0);
+  const PrimaryRays primaries(trees.rays.camera(), trees.view);
+  const RayChange nothing = no_change(trees.rays.light_order()).rays;
+  TreeBlock block;
+  for (std::uint32_t sample = 0; sample < trees.roots.size(); ++sample) {
+    StoredTree stored = trees.stored(sample);
+    stored.kept = kept.rays.data() + kept.first[sample];
+    GrowCounters counters;
+    TreeChange what = TreeChange::all;
+    update_tree(grow, nothing, nullptr, primaries.ray(trees.rect, sample), sample, stored, block, counters, what);
+    EXPECT_EQ(what, TreeChange::none);
+  }
+  ASSERT_EQ(block.nodes.size(), trees.block.nodes.size());
+  std::size_t scattered = 0;
+  for (std::size_t i = 0; i < block.nodes.size() && !HasFailure(); ++i) {
+    SCOPED_TRACE("node " + std::to_string(i));
+    const RayNode &grown = block.nodes[i], &expanded = trees.block.nodes[i];
+    expect_same_ray(grown.ray, expanded.ray);
+    EXPECT_EQ(grown.object, expanded.object);
+    EXPECT_EQ(grown.child, expanded.child);
+    if (grown.object.is_none()) continue;
+    EXPECT_EQ(grown.point.position, expanded.point.position);
+    EXPECT_EQ(grown.footprint, expanded.footprint);
+    EXPECT_EQ(grown.coverage.way, expanded.coverage.way);
+    EXPECT_EQ(grown.coverage.bucket, expanded.coverage.bucket);
+    const VertexLobes lobes = find_lobes(grown, trees.rays.object(grown.object));
+    ASSERT_EQ(lobes.any(), expanded.lobes != kNoNode);
+    if (!lobes.any()) continue;
+    expect_same_lobes(lobes, trees.block.lobes[expanded.lobes], grown.point.shading);
+    ++scattered;
+  }
+  EXPECT_GT(scattered, trees.roots.size() / 4) << "there is something to see";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, KeptRays, testing::ValuesIn(kScenes));
+
+TileSums shaded(const Trees& trees, const ColorScene& scene) {
+  TilePrograms programs(scene);
+  PathShader shader(scene, programs.path(), programs.places());
+  TileSums sums(programs.places().count, trees.rect.pixels());
+  shader.shade(trees.block, trees.view.samples, TermSign::add, sums);
+  return sums;
+}
+
+/// Edits of values that keep every ray.
+struct ColorEdit {
+  const char* name;
+  FieldMask fields;
+  std::function<void(Material&)> apply;
+};
+std::vector<ColorEdit> color_edits() {
+  return {{"base colour", mask_of(Field::base_color), [](Material& m) { m.base_color = Rgba(0.7F, 0.2F, 0.9F, 1); }},
+          {"black", mask_of(Field::base_color), [](Material& m) { m.base_color = Rgba(0, 0, 0, 1); }},
+          {"roughness", mask_of(Field::roughness), [](Material& m) { m.roughness *= 1.0F - 1.0F / 64; }},
+          {"metallic", mask_of(Field::metallic), [](Material& m) { m.metallic *= 1.0F - 1.0F / 256; }},
+          {"several", mask_of(Field::base_color) | mask_of(Field::sheen_color) | mask_of(Field::clearcoat),
+           [](Material& m) {
+             m.base_color.r *= 0.5F;
+             m.sheen_color = m.sheen_color * 0.5F;
+             m.clearcoat *= 0.75F;
+           }}};
+}
+
+bool is_opaque(const ColorScene& scene, MaterialId material) {
+  for (std::uint32_t id = 0; id < scene.scene().objects.size(); ++id) {
+    const SurfaceOptics& optics = scene.object(ObjectId(id)).optics;
+    if (scene.scene().objects[id].material == material && (optics.transparent || optics.passes_light)) return false;
+  }
+  return true;
+}
+
+class ExchangedTerms : public testing::TestWithParam<TestScene> {};
+
+TEST_P(ExchangedTerms, are_those_of_shading_twice) {
+  const SceneState state = with_integrator(test_scene(GetParam(), 24, 18), Integrator::path);
+  const Trees trees(state, deep_view());
+  std::size_t changed = 0;
+  for (std::uint32_t index = 0; index < state.scene().materials.size(); ++index) {
+    if (!is_opaque(trees.rays, MaterialId(index))) continue;
+    for (const ColorEdit& edit : color_edits()) {
+      SCOPED_TRACE("material " + std::to_string(index) + ", " + edit.name);
+      Scene after = state.scene();
+      edit.apply(after.materials[index]);
+      const ColorScene after_rays(trees.rays, after);  // the rays of the scene before, the colours of that after
+      const TileSums before_sums = shaded(trees, trees.rays), after_sums = shaded(trees, after_rays);
+      ParameterSet parameters;
+      parameters.materials.emplace_back(MaterialId(index), edit.fields);
+      TilePrograms programs(trees.rays);
+      PathShader shader(trees.rays, programs.path(), programs.places());
+      KeptTerms kept;
+      shader.keep(trees.block, trees.view.samples, parameters, kept);
+      TermMemory memory;
+      TileSums sums = before_sums;
+      exchange_terms(kept, state.scene(), after, memory, sums);
+      EXPECT_EQ(sums, after_sums);
+      exchange_terms(kept, after, state.scene(), memory, sums);
+      EXPECT_EQ(sums, before_sums) << "and back";
+      changed += before_sums == after_sums ? 0 : 1;
+    }
+  }
+  EXPECT_GT(changed, 4U) << "edits that bear on the picture";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ExchangedTerms, testing::ValuesIn(kScenes));
+
+}  // namespace
+}  // namespace relook
