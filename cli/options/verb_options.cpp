@@ -60,7 +60,7 @@ std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, R
   verb.add_option("--camera", view.camera, "NAME, auto, or EYE:TARGET:FOV as x,y,z:x,y,z:degrees");
   add_lights(verb, raw);
   verb.add_option("--resolution", raw.resolution, "WxH in pixels; 960x540");
-  verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 256));
+  verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 4096));
   verb.add_option("--max-depth", view.sampling.max_depth, "Generations of rays; 6")->check(CLI::Range(1, 16));
   add_integrator(verb, raw, "whitted: lamps without size, sharp shadows; path: every light, soft shadows; whitted");
   verb.add_option("--diffuse-depth", view.sampling.diffuse_depth, "Of path: bounces off diffuse surfaces, 0: they are lit by lights alone; 0")

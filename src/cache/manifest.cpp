@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kFormatPrefix = "cache/";
 constexpr std::size_t kLargestManifestBytes = std::size_t{64} << 20;
 constexpr std::size_t kMostFiles = 200000;
-constexpr std::int64_t kLargestSide = 16384, kMostSamples = 1024, kMostDepth = 32;
+constexpr std::int64_t kLargestSide = 16384, kMostSamples = 4096, kMostDepth = 32;
 constexpr std::int64_t kMostEntities = 0xFFFFFFFE, kMostTunnels = 255, kMostAtoms = 1 << 20;
 
 Json vector_json(const Imath::V3f& v) { return Json::array({v.x, v.y, v.z}); }

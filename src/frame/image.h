@@ -15,7 +15,7 @@ namespace relook {
 
 /// Sampling options that a cache fixes, beside the camera.
 struct ViewOptions {
-  std::uint32_t samples = 1;      // per pixel, at fixed positions; 1..1024
+  std::uint32_t samples = 1;      // per pixel, at fixed positions; 1..4096
   std::uint32_t max_depth = 6;    // generations of rays, primary rays are the first; 1..32
   std::uint32_t shadow_bits = 0;  // of the shadow counters in ray paths; 0..4
   Integrator integrator = Integrator::whitted;

@@ -23,7 +23,7 @@ TEST_F(Cli, usage_errors_are_one_line_and_exit_1) {
   expect_error(render_with({"--resolution", "0x5"}), 1, "--resolution: \"0x5\"");
   expect_error(render_with({"--resolution", "16385x5"}), 1, "--resolution");
   expect_error(render_with({"--samples", "0"}), 1, "--samples");
-  expect_error(render_with({"--samples", "257"}), 1, "--samples");
+  expect_error(render_with({"--samples", "4097"}), 1, "--samples");
   expect_error(render_with({"--max-depth", "17"}), 1, "--max-depth");
   expect_error(render_with({"--threads", "1025"}), 1, "--threads");
   expect_error(render_with({"--threads", "-1"}), 1, "--threads");

@@ -36,12 +36,12 @@ Pool<PathShader>::Loan shader_of(const TilePrograms& programs, Pool<PathShader>&
 
 class PathTileUpdater {
  public:
-  /// `rays`: as kept; empty: nothing.
-  PathTileUpdater(const PathPass& pass, std::size_t tile, const TileRays& rays)
+  /// `rays`: as kept; empty: nothing. `records_all`: every sample will be grown.
+  PathTileUpdater(const PathPass& pass, std::size_t tile, const TileRays& rays, bool records_all)
       : pass_(pass),
         rays_(rays),
         use_(is_usable(rays, pass.ray_use) ? pass.ray_use : RayUse::none),
-        recorder_(rays, pass.updates_all && use_ == RayUse::none),
+        recorder_(rays, records_all && use_ == RayUse::none),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         samples_(pass.image.view.samples),
@@ -83,7 +83,6 @@ class PathTileUpdater {
   }
 
   PathTileResult trace() {
-    result_.rays = TileRays();
     result_.terms = TileTerms();
     std::vector<SpawnedRay> rays;
     const auto count = static_cast<std::uint32_t>(trees_.paths.size());
@@ -93,11 +92,16 @@ class PathTileUpdater {
       rays.clear();
       primaries_.append(rect_, first, last, rays);
       trace_trees(pass_.grow_after, rays, first, changed_.block, changed_.roots, result_.counters);
-      for (std::uint32_t k = 0; k < changed_.roots.size(); ++k) pack_sample(changed_, changed_.roots[k], first + k);
+      for (std::uint32_t k = 0; k < changed_.roots.size(); ++k) {
+        pack_sample(changed_, changed_.roots[k], first + k);
+        recorder_.record(changed_.block, changed_.roots[k], first + k);
+      }
+      changed_.is_recorded.assign(changed_.roots.size(), 1);
       result_.samples += last - first;
       chunk.learn(changed_.block, last - first);
       shade(changed_, *shader_after_, TermSign::add, new_terms_, {});
     }
+    result_.rays = recorder_.take();
     result_.sums = PackedSums::pack(new_terms_);
     result_.has_changed = true;
     return std::move(result_);
@@ -279,7 +283,7 @@ class PathTileUpdater {
 }  // namespace
 
 PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums, const TileRays& rays) {
-  return PathTileUpdater(pass, tile, rays).update(sums);
+  return PathTileUpdater(pass, tile, rays, pass.updates_all).update(sums);
 }
 
 PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
@@ -300,7 +304,7 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
 
 PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile) {
   static const TileRays kNone;
-  return PathTileUpdater(pass, tile, kNone).trace();
+  return PathTileUpdater(pass, tile, kNone, true).trace();
 }
 
 }  // namespace relook
