@@ -1,0 +1,54 @@
+// The standard path tracer that the bench measures errors against has the same mean as the program, whichever choices
+// it makes.
+#include "standard_tracer.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "path_studio.h"
+
+namespace relook {
+namespace {
+
+constexpr std::array kRules{SamplingRules{},
+                            SamplingRules{.apart = true},
+                            SamplingRules{.plain_shares = true, .buckets = true},
+                            SamplingRules{.apart = true, .plain_shares = true, .buckets = true, .split = true},
+                            SamplingRules{.unstratified = true}};
+
+Rgba sky_with_sun(std::uint32_t x, std::uint32_t y) {
+  return x == 2 && y == 1 ? Rgba(40, 30, 20, 1) : Rgba(0.2F, 0.3F, y < 4 ? 0.8F : 0.1F, 1);
+}
+
+/// By every rule the differences of pixels have a mean of zero.
+void expect_mean_of_program(const SceneState& state, const std::string& what) {
+  ViewOptions view;
+  view.samples = 64;
+  view.diffuse_depth = 2;
+  view.integrator = Integrator::path;
+  const std::vector<Vec> program = colors_of(rendered(state.scene(), view));
+  for (std::size_t i = 0; i < kRules.size(); ++i) {
+    const std::vector<Vec> standard = StandardTracer(state.scene(), view, kRules[i]).pixels(view.samples, i);
+    ASSERT_EQ(program.size(), standard.size());
+    std::vector<Vec> differences;
+    for (std::size_t p = 0; p < program.size(); ++p) differences.push_back(program[p] - standard[p]);
+    const Vec mean = measured(standard).mean;
+    Measured both = measured(differences);
+    both.mean += mean;
+    expect_measured(both, mean, what + ", rules " + std::to_string(i), 2e-3);
+  }
+}
+
+TEST(StandardTracer, means_under_a_sky_with_a_sun_are_the_programs) {
+  const auto sky = single_level_image(8, sky_with_sun);
+  for (const float base : {1.0F, 0.05F})
+    expect_mean_of_program(still_life_scene(sky, base, 24, 16), "base " + std::to_string(base));
+}
+
+TEST(StandardTracer, means_under_a_rectangle_are_the_programs) {
+  expect_mean_of_program(still_life_scene(nullptr, 1, 24, 16), "rectangle");
+}
+
+}  // namespace
+}  // namespace relook
