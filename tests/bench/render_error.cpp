@@ -81,14 +81,20 @@ struct NamedRules {
   const char* name;
   SamplingRules rules;
 };
-constexpr std::array kChoices{
-    NamedRules{"lobes estimated apart", {.apart = true}},
-    NamedRules{"shares without colours", {.plain_shares = true}},
-    NamedRules{"both", {.apart = true, .plain_shares = true}},
-    NamedRules{"buckets of alpha", {.buckets = true}},
-    NamedRules{"sky by lobes, suns by samples", {.split = true}},
-    NamedRules{"all four, as relook", {.apart = true, .plain_shares = true, .buckets = true, .split = true}},
-    NamedRules{"independent random numbers", {.unstratified = true}}};
+constexpr SamplingRules kAsRelook{.apart = true, .plain_shares = true, .buckets = true, .split = true};
+constexpr SamplingRules with_least_specular(double share) {
+  SamplingRules rules = kAsRelook;
+  rules.least_specular = share;
+  return rules;
+}
+constexpr std::array kChoices{NamedRules{"lobes estimated apart", {.apart = true}},
+                              NamedRules{"shares without colours", {.plain_shares = true}},
+                              NamedRules{"both", {.apart = true, .plain_shares = true}},
+                              NamedRules{"buckets of alpha", {.buckets = true}},
+                              NamedRules{"sky by lobes, suns by samples", {.split = true}},
+                              NamedRules{"all four, as relook", kAsRelook},
+                              NamedRules{"all four, specular share at least 1/4", with_least_specular(0.25)},
+                              NamedRules{"independent random numbers", {.unstratified = true}}};
 
 void print_scene_errors(const char* name, const SceneState& state, const BenchOptions& options) {
   const ViewOptions& view = options.view;
@@ -131,13 +137,15 @@ BenchOptions error_options(const std::vector<std::string>& words) {
 void print_errors(const BenchOptions& options) {
   const std::uint32_t width = options.width, height = options.height;
   const ScratchFolder folder;
-  run_program({"python3", "-B", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import hdri; hdri.write(sys.argv[2])",
+  run_program({"python3", "-B", "-c",
+               "import sys; sys.path.insert(0, sys.argv[1]); import hdri; hdri.write(sys.argv[2])",
                RELOOK_SOURCE_DIR "/scenes", (folder / "").string()});
   std::printf("path, %ux%u, %u samples a pixel: ratios of RMSE, plain and tone-mapped\n", width, height,
               options.view.samples);
   const auto sky = sky_of(folder, "sky.hdr"), studio = sky_of(folder, "studio.hdr");
   print_scene_errors("clear sky", still_life_scene(sky, 1, width, height), options);
-  print_scene_errors("clear sky, dark plastics", still_life_scene(sky, 0.05F, width, height), options);
+  print_scene_errors("clear sky, grey plastics", still_life_scene(sky, 0.3F, width, height), options);
+  print_scene_errors("clear sky, black plastics", still_life_scene(sky, 0.05F, width, height), options);
   print_scene_errors("studio", still_life_scene(studio, 1, width, height), options);
   print_scene_errors("rectangle", still_life_scene(nullptr, 1, width, height), options);
 }

@@ -5,14 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
+#include "hammersley.h"
 #include "path_studio.h"
+#include "pi.h"
 
 namespace relook {
 namespace {
 
-constexpr std::array kRules{SamplingRules{},
-                            SamplingRules{.apart = true},
+constexpr std::array kRules{SamplingRules{}, SamplingRules{.apart = true},
                             SamplingRules{.plain_shares = true, .buckets = true},
                             SamplingRules{.apart = true, .plain_shares = true, .buckets = true, .split = true},
                             SamplingRules{.unstratified = true}};
@@ -48,6 +50,30 @@ TEST(StandardTracer, means_under_a_sky_with_a_sun_are_the_programs) {
 
 TEST(StandardTracer, means_under_a_rectangle_are_the_programs) {
   expect_mean_of_program(still_life_scene(nullptr, 1, 24, 16), "rectangle");
+}
+
+TEST(StandardTracer, directions_to_the_environment_have_the_density_that_it_says) {
+  const LuminanceMap map(8, 5, [](std::uint32_t x, std::uint32_t y) { return x == 3 && y == 2 ? 20.0 : 1.0 + x; });
+  constexpr std::uint32_t kRows = 500, kPoints = 1U << 16U;
+  double integral = 0;
+  for (std::uint32_t i = 0; i < kRows; ++i)
+    for (std::uint32_t j = 0; j < 2 * kRows; ++j) {
+      const double tilt = kPi * (i + 0.5) / kRows, turn = kPi * (j + 0.5) / kRows;
+      const Vec way(std::sin(tilt) * std::sin(turn), std::cos(tilt), -std::sin(tilt) * std::cos(turn));
+      integral += map.density(way) * std::sin(tilt) * std::pow(kPi / kRows, 2);
+    }
+  EXPECT_NEAR(integral, 1, 1e-4);
+  // Draws weighted by their density are even over the sphere.
+  double sphere = 0, upper = 0;
+  for (std::uint32_t i = 0; i < kPoints; ++i) {
+    const Uv u = hammersley_point(i, kPoints);
+    const Vec way = map.draw(u.x, u.y);
+    EXPECT_NEAR(way.length(), 1, 1e-12);
+    sphere += 1 / map.density(way) / kPoints;
+    upper += way.y > 0 && way.x > 0 ? 1 / map.density(way) / kPoints : 0;
+  }
+  EXPECT_NEAR(sphere, 4 * kPi, 0.02);
+  EXPECT_NEAR(upper, kPi, 0.02);
 }
 
 }  // namespace

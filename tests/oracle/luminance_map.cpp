@@ -62,9 +62,10 @@ Vec LuminanceMap::draw(double u, double v) const {
   const Cell column = cell_in(&columns_[row.number * (width_ + 1)], width_, u);
   const Corners c = corners(column.number, row.number);
   const double down = linear_place(c.upper_left + c.upper_right, c.lower_left + c.lower_right, row.rest);
-  const double right = linear_place(mixed(c.upper_left, c.lower_left, down), mixed(c.upper_right, c.lower_right, down),
-                                    column.rest);
-  const double turn = 2 * kPi * ((static_cast<double>(column.number) - 0.5 + right) / static_cast<double>(width_) - 0.5);
+  const double right =
+      linear_place(mixed(c.upper_left, c.lower_left, down), mixed(c.upper_right, c.lower_right, down), column.rest);
+  const double turn =
+      2 * kPi * ((static_cast<double>(column.number) - 0.5 + right) / static_cast<double>(width_) - 0.5);
   const double tilt = kPi * mixed(edge(row.number), edge(row.number + 1), down);
   return {std::sin(tilt) * std::sin(turn), std::cos(tilt), -std::sin(tilt) * std::cos(turn)};
 }

@@ -14,9 +14,7 @@ Vec radiance_of(const Light& light) {
   return color_of(light.color) * scale;
 }
 
-bool has_shape(const Light& light) {
-  return light.radius > 0 || light.angle > 0 || traits_of(light.kind).has_size;
-}
+bool has_shape(const Light& light) { return light.radius > 0 || light.angle > 0 || traits_of(light.kind).has_size; }
 
 double share_of(const Light& light, const Vec& at) {
   if (!traits_of(light.kind).has_radius) return 1;

@@ -104,7 +104,8 @@ StandardTracer::Lobes StandardTracer::lobes_of(const Surface& s) const {
     const bool is_metal = s.material->metallic == 1;
     const LobeShares shares = lobe_shares({!is_metal, true, false}, bucket_of_metallic(s.material->metallic),
                                           static_cast<float>(reflectance), 0);
-    lobes.share = {shares.diffuse, shares.specular};
+    const double specular = is_metal ? 1 : std::max(double{shares.specular}, rules_.least_specular);
+    lobes.share = {1 - specular, specular};
   } else {
     const double below = brightness(s.base()) * (1.0 - s.material->metallic) * s.entered();
     const double above = brightness(s.reflectance(s.nv));
@@ -189,8 +190,7 @@ Vec StandardTracer::met(const Step& step, const Found& found) const {
   }
   if (found.triangle != nullptr) return sum;
   const Surroundings all = seen(step.ray.way);
-  return sum + all.rest +
-         all.sampled * (step.density ? power_weight(*step.density, map_.density(step.ray.way)) : 1);
+  return sum + all.rest + all.sampled * (step.density ? power_weight(*step.density, map_.density(step.ray.way)) : 1);
 }
 
 std::optional<StandardTracer::Step> StandardTracer::scattered(const Surface& s, const Lobes& lobes, const Step& before,
