@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "growth.h"
+#include "render_error.h"
 #include "scene_measures.h"
 #include "scratch.h"
 #include "tunnels.h"
@@ -72,6 +73,10 @@ void print_all(const std::vector<std::string>& words) {
   print_tunnels(options);
   record.begin("garden, growth", true);
   print_growth(options);
+  BenchOptions errors = error_options({});
+  errors.record = &record;
+  record.begin("small scenes, path", true);
+  print_errors(errors);
   record.print_goals();
   if (!parsed.json.empty()) write_file(parsed.json, record.json().dump(2) + "\n");
   if (!parsed.html.empty()) write_file(parsed.html, record.html());

@@ -11,6 +11,7 @@
 #include "growth.h"
 #include "light.h"
 #include "peaks.h"
+#include "render_error.h"
 #include "scene_measures.h"
 #include "tunnels.h"
 
@@ -31,6 +32,7 @@ constexpr std::array<Measure, 5> kMeasures{Measure{"tables", print_tables, 256, 
 void run(int count, char** arguments) {
   const std::string_view name = count > 1 ? arguments[1] : "";
   if (name == "all") return print_all({arguments + 2, arguments + count});
+  if (name == "error") return print_errors(error_options({arguments + 2, arguments + count}));
   if (name == "peaks") {
     if (count != 4) throw UsageError("relook_bench peaks CACHE JOURNAL");
     return print_peaks(arguments[2], arguments[3]);

@@ -1,10 +1,12 @@
 #include "path_reference.h"
 
+#include <ImathBox.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
+#include "path_reference_light.h"
 #include "path_reference_surface.h"
 #include "pi.h"
 
@@ -12,50 +14,12 @@ namespace relook {
 namespace {
 
 constexpr double kOffset = 1e-6;
+constexpr std::size_t kPartSize = 16;
 const Vec kBlack(0, 0, 0);
 
 double number(std::mt19937_64& random) { return static_cast<double>(random() >> 11U) * 0x1p-53; }
 Vec normal_of(const WorldTriangle& t) { return (t.b - t.a).cross(t.c - t.a); }
 bool is_black(const Vec& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
-
-Vec radiance_of(const Light& light) {
-  double scale = light.intensity;
-  if (light.radius > 0) scale /= kPi * light.radius * light.radius;
-  if (light.angle > 0) scale /= kPi * std::pow(std::sin(light.angle / 2.0), 2);
-  return color_of(light.color) * scale;
-}
-bool has_shape(const Light& light) {
-  return light.radius > 0 || light.angle > 0 || traits_of(light.kind).has_size;
-}
-double share_of(const Light& light, const Vec& at) {
-  if (!traits_of(light.kind).has_radius) return 1;
-  const Vec way = Vec(light.position) - at;
-  const double window = std::max(1 - std::pow(way.length() / light.range, 4), 0.0);
-  if (!traits_of(light.kind).has_cone) return window;
-  const double outer = std::cos(double{light.outer_cone}), inner = std::cos(double{light.inner_cone});
-  const double cosine = -Vec(light.direction).dot(way.normalized());
-  return window * std::pow(std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0), 2);
-}
-
-/// Where a ray meets a light's shape from the side that shines.
-std::optional<double> crossing(const Light& light, const Vec& origin, const Vec& way) {
-  if (light.angle > 0)
-    return -Vec(light.direction).dot(way) >= std::cos(light.angle / 2.0) ? std::optional(1e30) : std::nullopt;
-  const Vec to = Vec(light.position) - origin;
-  if (light.radius > 0) {
-    const double along = to.dot(way), left = double{light.radius} * light.radius - (to - way * along).length2();
-    if (left < 0) return std::nullopt;
-    const double half = std::sqrt(left), t = to.length() > light.radius ? along - half : along + half;
-    return t > 0 ? std::optional(t) : std::nullopt;
-  }
-  const double facing = Vec(light.direction).dot(way);
-  if (facing >= 0) return std::nullopt;
-  const double t = Vec(light.direction).dot(to) / facing;
-  const Vec at = way * t - to, right(light.right), up(light.up);
-  const double x = at.dot(right) / right.length2(), y = at.dot(up) / up.length2();
-  const bool is_inside = light.kind == LightKind::disk ? x * x + y * y <= 1 : std::max(std::fabs(x), std::fabs(y)) <= 1;
-  return t > 0 && is_inside ? std::optional(t) : std::nullopt;
-}
 
 }  // namespace
 
@@ -63,7 +27,31 @@ PathReference::PathReference(const Scene& scene, unsigned diffuse_depth, unsigne
     : scene_(scene), diffuse_depth_(diffuse_depth), max_depth_(max_depth), glossy_depth_(glossy_depth) {
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].alive) continue;
-    for (const WorldTriangle& triangle : world_triangles(scene, i)) triangles_.push_back(triangle);
+    const std::vector<WorldTriangle> triangles = world_triangles(scene, i);
+    for (std::size_t first = 0; first < triangles.size(); first += kPartSize) {
+      Part part{triangles_.size(), 0, kBlack, 0};
+      Imath::Box3d box;
+      for (std::size_t t = first; t < std::min(first + kPartSize, triangles.size()); ++t) {
+        triangles_.push_back(triangles[t]);
+        for (const Vec& corner : {triangles[t].a, triangles[t].b, triangles[t].c}) box.extendBy(corner);
+      }
+      part.end = triangles_.size();
+      part.middle = box.center();
+      part.radius2 = box.size().length2() / 4 * (1 + 1e-9);
+      parts_.push_back(part);
+    }
+  }
+}
+
+template <class Visitor>
+void PathReference::visit_crossings(const Vec& origin, const Vec& way, const Visitor& visit) const {
+  for (const Part& part : parts_) {
+    const Vec to = part.middle - origin;
+    if ((to - way * to.dot(way)).length2() > part.radius2) continue;
+    for (std::size_t i = part.first; i < part.end; ++i) {
+      const LineHit hit = intersect(triangles_[i], origin, way);
+      if (hit.inside && hit.t > 0) visit(Found{&triangles_[i], hit.t, hit.u, hit.v});
+    }
   }
 }
 
@@ -74,13 +62,19 @@ bool PathReference::is_met(const WorldTriangle& triangle, const Vec& way) const 
   return !is_back || scene_.material(object.material).double_sided;
 }
 
+PathReference::Ray PathReference::eye_ray(double across, double down) const {
+  const CameraRay from = camera_ray(scene_.camera, static_cast<float>(across), static_cast<float>(down));
+  Ray ray{};
+  ray.origin = Vec(from.origin);
+  ray.way = Vec(from.direction).normalized();
+  return ray;
+}
+
 PathReference::Found PathReference::nearest(const Vec& origin, const Vec& way) const {
   Found best;
-  for (const WorldTriangle& triangle : triangles_) {
-    const LineHit hit = intersect(triangle, origin, way);
-    if (hit.inside && hit.t > 0 && (!best.triangle || hit.t < best.t) && is_met(triangle, way))
-      best = {&triangle, hit.t, hit.u, hit.v};
-  }
+  visit_crossings(origin, way, [&](const Found& found) {
+    if ((!best.triangle || found.t < best.t) && is_met(*found.triangle, way)) best = found;
+  });
   return best;
 }
 
@@ -124,11 +118,9 @@ PathReference::Surface PathReference::surface_at(const Found& found, const Vec& 
 
 Vec PathReference::passed(const Vec& from, const Vec& way, double distance, bool is_sized) const {
   std::vector<Found> crossings;
-  for (const WorldTriangle& triangle : triangles_) {
-    const LineHit hit = intersect(triangle, from, way);
-    if (hit.inside && hit.t > 0 && hit.t < distance && is_met(triangle, is_sized ? way : -way))
-      crossings.push_back({&triangle, hit.t, hit.u, hit.v});
-  }
+  visit_crossings(from, way, [&](const Found& found) {
+    if (found.t < distance && is_met(*found.triangle, is_sized ? way : -way)) crossings.push_back(found);
+  });
   std::ranges::sort(crossings, {}, &Found::t);
   Vec light(1, 1, 1);
   std::map<std::uint32_t, double> entered;
@@ -138,6 +130,10 @@ Vec PathReference::passed(const Vec& from, const Vec& way, double distance, bool
     entry = found.t;
   }
   return light;
+}
+
+Vec PathReference::segment_origin(const Surface& s, const Vec& way) {
+  return s.p + s.lift * std::clamp(1 - s.ng.dot(way) / 0.1, 0.0, 1.0) + s.ng * kOffset;
 }
 
 Vec PathReference::surroundings(const Ray& ray) const {
@@ -230,8 +226,7 @@ Vec PathReference::of_light(const Light& light, const Surface& s, const Ray& ray
   if (!is_sized || Surface::is_wide(s.coat_alpha)) value += s.coating(way);
   const Vec light_there = value * arriving;
   if (is_black(light_there)) return kBlack;
-  const Vec origin = s.p + s.lift * std::clamp(1 - s.ng.dot(way) / 0.1, 0.0, 1.0) + s.ng * kOffset;
-  return light_there * passed(origin, way, distance, is_sized);
+  return light_there * passed(segment_origin(s, way), way, distance, is_sized);
 }
 
 Vec PathReference::gathered(const Surface& s, const Ray& ray, Random& random) const {
@@ -373,11 +368,7 @@ std::vector<PathReference::Pixel> PathReference::pixels(unsigned samples, std::u
       Vec sum = kBlack, squares = kBlack;
       for (unsigned k = 0; k < samples; ++k) {
         const double across = x + number(random), down = y + number(random);
-        const CameraRay from = camera_ray(camera, static_cast<float>(across), static_cast<float>(down));
-        Ray ray{};
-        ray.origin = Vec(from.origin);
-        ray.way = Vec(from.direction).normalized();
-        const Vec value = radiance(ray, random);
+        const Vec value = radiance(eye_ray(across, down), random);
         sum += value;
         squares += value * value;
       }

@@ -1,5 +1,5 @@
 // The oracle of the integrator `path`: a small path tracer of its own, after src/color/PATH.md but by other techniques.
-// Double precision, brute force over all triangles, random numbers, no buckets: half vectors of a lobe's own alpha, all
+// Double precision, brute force over triangles, random numbers, no buckets: half vectors of a lobe's own alpha, all
 // lobes equally likely. Lights with a size are found by samples alone for wide lobes and by rays alone for narrow ones;
 // suns by rays alone. Materials without textures: metallic-roughness without sheen, film, brush and dispersion, and
 // unlit.
@@ -23,7 +23,7 @@ class PathReference {
   /// From so many samples at random places in each, row by row.
   [[nodiscard]] std::vector<Pixel> pixels(unsigned samples, std::uint64_t seed) const;
 
- private:
+ protected:
   struct Ray {
     Vec origin, way;
     unsigned generation = 1, glossy = 0, diffuse = 0;
@@ -44,23 +44,39 @@ class PathReference {
   using Random = std::mt19937_64;
 
   [[nodiscard]] bool is_met(const WorldTriangle& triangle, const Vec& way) const;
+  [[nodiscard]] Ray eye_ray(double across, double down) const;
   [[nodiscard]] Found nearest(const Vec& origin, const Vec& way) const;
   [[nodiscard]] Surface surface_at(const Found& found, const Vec& way, double floor) const;
   /// What the straight way to a light lets through.
   /// `is_sized`: single-sided surfaces are met as a ray meets them, else as the light of a lamp does.
   [[nodiscard]] Vec passed(const Vec& from, const Vec& way, double distance, bool is_sized) const;
 
-  [[nodiscard]] Vec radiance(const Ray& ray, Random& random) const;
   [[nodiscard]] Vec surroundings(const Ray& ray) const;
+  /// Where a segment to a light at `way` leaves a surface.
+  [[nodiscard]] static Vec segment_origin(const Surface& s, const Vec& way);
+
+  const Scene& scene_;
+  unsigned diffuse_depth_, max_depth_, glossy_depth_;
+
+ private:
+  /// Some triangles of an object, [first, end), and a sphere around them.
+  struct Part {
+    std::size_t first, end;
+    Vec middle;
+    double radius2;
+  };
+  template <class Visitor>
+  void visit_crossings(const Vec& origin, const Vec& way, const Visitor& visit) const;
+
+  [[nodiscard]] Vec radiance(const Ray& ray, Random& random) const;
   [[nodiscard]] Vec crossed(const Ray& ray, double end) const;
   [[nodiscard]] Vec gathered(const Surface& s, const Ray& ray, Random& random) const;
   [[nodiscard]] Vec of_light(const Light& light, const Surface& s, const Ray& ray, Random& random) const;
   [[nodiscard]] Vec scattered(const Surface& s, const Ray& ray, Random& random) const;
   [[nodiscard]] Vec refracted(const Surface& s, const Ray& ray, Random& random) const;
 
-  const Scene& scene_;
-  unsigned diffuse_depth_, max_depth_, glossy_depth_;
   std::vector<WorldTriangle> triangles_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace relook

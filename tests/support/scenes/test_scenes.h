@@ -79,6 +79,12 @@ class SceneBuilder {
 /// own, and beside the roles every kind of surface: see lights_scene.cpp. Its state is compiled for `path`.
 [[nodiscard]] SceneState lights_scene(std::uint32_t width, std::uint32_t height);
 
+/// (f) of the integrator `path`, not of the matrix, all opaque and without textures: a floor, balls of metal and of
+/// glossy plastic under the image `sky`, or under a rectangle where that is null. `base`: the plastics' colours are
+/// multiplied by it.
+[[nodiscard]] SceneState still_life_scene(std::shared_ptr<const TexturePyramid> sky, float base, std::uint32_t width,
+                                          std::uint32_t height);
+
 enum class TestScene { spheres, cards, study, lights };
 [[nodiscard]] SceneState test_scene(TestScene scene, std::uint32_t width, std::uint32_t height);
 [[nodiscard]] const char* test_scene_name(TestScene scene);
