@@ -19,7 +19,7 @@ namespace relook {
 struct SamplingRules {
   bool apart = false;         // the chosen lobe brings its own light alone
   bool plain_shares = false;  // of the lobes, without their colours
-  double least_specular = 0;  // with plain shares: of the specular lobe beside a diffuse one; relook's: 0.1
+  double least_specular = 0;  // with plain shares: of the specular lobe beside a diffuse one
   bool buckets = false;       // directions by the bucket of alpha
   bool split = false;         // samples of the suns alone; the sky is left to the lobes
   bool unstratified = false;  // not relook's: independent random numbers instead of its point sets

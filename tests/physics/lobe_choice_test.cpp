@@ -130,7 +130,7 @@ TEST(LobeChoice, SharesAreAtLeastATenthAndSumToOne) {
 TEST(LobeChoice, SharesFollowWhatIsReflected) {
   const LobeSet both{true, true, false};
   // F / (F + (1 - F) / 2) of 0.04 is 0.077, of 0.3 it is 0.46.
-  EXPECT_EQ(lobe_shares(both, MetallicBucket::dielectric, 0.04F, 0).specular, kLeastShare);
+  EXPECT_EQ(lobe_shares(both, MetallicBucket::dielectric, 0.04F, 0).specular, kLeastSpecularShare);
   EXPECT_NEAR(lobe_shares(both, MetallicBucket::dielectric, 0.3F, 0).specular, 0.3 / 0.65, 1e-6);
   EXPECT_NEAR(lobe_shares(both, MetallicBucket::dielectric, 1, 0).specular, 0.9, 1e-6);
   EXPECT_EQ(lobe_shares(both, MetallicBucket::mixed, 0.04F, 0).specular, 0.5F);

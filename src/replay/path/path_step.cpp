@@ -129,7 +129,8 @@ class PathUpdate {
                   shaders_before, shaders_after,   {},              {},             {},          {},
                   false,          RayUse::none,    {},              false};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
-    if (pass.ray_use == RayUse::colors) pass.term_parameters = term_parameters();
+    const bool relights = change_.any_taken() || change_.any_given() || change_.any_afresh();
+    if (pass.ray_use == RayUse::colors && !relights) pass.term_parameters = term_parameters();
     pass.keeps_terms = pass.term_parameters && parts_.color_trees.most_samples() > 0 &&
                        parts_.color_trees.set_for(*pass.term_parameters) != nullptr;
     std::vector<PathTileResult> results(stored_.image().trees.size());
