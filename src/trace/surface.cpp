@@ -125,13 +125,17 @@ Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at)
   return Point(uv.x, uv.y, 0);
 }
 
-Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
-  if (slot.kind == TextureKind::procedural) return evaluate(slot.procedural, procedural_position(slot, at));
+TexelTaps texture_taps(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
   const auto& base = slot.pyramid->levels.front();
   const float texels = static_cast<float>(base.width) * static_cast<float>(base.height) *
                        std::fabs(slot.scale.x * slot.scale.y) * at.area_ratio;
   const float level = 0.5F * portable_log2(texels * footprint * footprint);
-  return sample(*slot.pyramid, transformed_uv(slot, at.position), level, slot.sampler);
+  return texel_taps(*slot.pyramid, transformed_uv(slot, at.position), level, slot.sampler);
+}
+
+Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
+  if (slot.kind == TextureKind::procedural) return evaluate(slot.procedural, procedural_position(slot, at));
+  return value_of(*slot.pyramid, texture_taps(slot, at, footprint));
 }
 
 namespace {

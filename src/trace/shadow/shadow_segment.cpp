@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "trace/light/emission_source.h"
 #include "trace/light/ray_light.h"
 
 namespace relook {
@@ -37,6 +38,15 @@ bool lights_back(const RayNode& node, const RayLight& light) {
   return node.has_back && !(light.is_soft() ? path.is_wide || path.is_shut : path.has_lamps);
 }
 
+/// False where no sample of a light leads above the horizon of a hit, or, if it has a back, none at all.
+bool may_face(const RayNode& node, const RayLight& light) {
+  if (light.emission) return !light.emission->empty();
+  if (!light.shape) return true;
+  const SurfacePoint& point = node.point;
+  return relook::shines_at(*light.shape, point.position) &&
+         (node.has_back || !is_below(*light.shape, point.position, point.shading));
+}
+
 }  // namespace
 
 ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
@@ -44,6 +54,7 @@ ShadowSegment shadow_segment(const RayNode& node, const RayLight& light) {
   ShadowSegment segment;
   std::optional<Target> target;
   if (light.is_soft()) {
+    if (!may_face(node, light)) return segment;
     segment.sample = sample_light(light, node);
     if (segment.sample) target = target_of(node, light, *segment.sample);
   } else {
