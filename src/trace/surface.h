@@ -35,8 +35,8 @@ struct TextureCoordinates {
 /// none.
 [[nodiscard]] Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint);
 
-/// Its texels and their shares. Requires kind image.
-[[nodiscard]] TexelTaps texture_taps(const TextureSlot& slot, const TextureCoordinates& at, float footprint);
+/// Finds its texels and their shares. Requires kind image.
+void find_taps(const TextureSlot& slot, const TextureCoordinates& at, float footprint, TexelTaps& taps);
 
 /// Where a procedural texture is evaluated. Requires kind procedural.
 [[nodiscard]] Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at);

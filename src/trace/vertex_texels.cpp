@@ -25,7 +25,7 @@ VertexTexels::VertexTexels(const RayNode& node, const RayObject& object, std::in
     before = &slot;
     Placed& placed = placed_[count_++];
     placed.slot = name;
-    placed.taps = texture_taps(slot, at, node.footprint);
+    find_taps(slot, at, node.footprint, placed.taps);
     prefetch(*slot.pyramid, placed.taps);
   }
 }

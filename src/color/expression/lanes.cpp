@@ -56,7 +56,7 @@ void look_up_image(const Kernel::Step& step, const TextureSlot& slot, const Scra
     const std::size_t count = std::min(kAhead, lanes - first);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t lane = first + k;
-      taps[k] = texture_taps(slot, coordinates(step, scratch, lane), scratch.at[step.in[4]][lane]);
+      find_taps(slot, coordinates(step, scratch, lane), scratch.at[step.in[4]][lane], taps[k]);
       prefetch(*slot.pyramid, taps[k]);
     }
     for (std::size_t k = 0; k < count; ++k) set_lane(result, first + k, value_of(*slot.pyramid, taps[k]));

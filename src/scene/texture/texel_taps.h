@@ -21,8 +21,8 @@ struct TexelTaps {
   bool has_coarse, is_nearest;
 };
 
-/// `uv`, `level`: as sample() has them.
-[[nodiscard]] TexelTaps texel_taps(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler);
+/// `uv`, `level`: as sample() has them. Fills `taps` in place: copies of what has just been written are slow.
+void find_taps(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler, TexelTaps& taps);
 [[nodiscard]] Rgba value_of(const TexturePyramid& pyramid, const TexelTaps& taps);
 
 /// Asks for the texels.

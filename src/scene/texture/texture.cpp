@@ -70,23 +70,26 @@ Floor floor_of(float x) {
   return {whole, x - rounded};
 }
 
-TexelTaps::Square nearest_texel(const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler) {
+void find_nearest(const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler,
+                  TexelTaps::Square& square) {
   const float x = uv.x * static_cast<float>(level.width), y = uv.y * static_cast<float>(level.height);
   const std::uint64_t row = wrapped(floor_of(y).whole, level.height, sampler.wrap_t);
-  const std::size_t texel = level.offset + row * level.width + wrapped(floor_of(x).whole, level.width, sampler.wrap_s);
-  return {{texel, texel, texel, texel}, 0, 0};
+  square.texels[0] = level.offset + row * level.width + wrapped(floor_of(x).whole, level.width, sampler.wrap_s);
 }
 
-TexelTaps::Square four_texels(const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler) {
+void find_four(const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler, TexelTaps::Square& square) {
   const Floor x = floor_of(uv.x * static_cast<float>(level.width) - 0.5F);
   const Floor y = floor_of(uv.y * static_cast<float>(level.height) - 0.5F);
   const Pair columns = wrapped_pair(x.whole, level.width, sampler.wrap_s);
   const Pair rows = wrapped_pair(y.whole, level.height, sampler.wrap_t);
   const std::size_t above = level.offset + std::uint64_t{rows.first} * level.width;
   const std::size_t below = level.offset + std::uint64_t{rows.second} * level.width;
-  return {{above + columns.first, above + columns.second, below + columns.first, below + columns.second},
-          x.fraction,
-          y.fraction};
+  square.texels[0] = above + columns.first;
+  square.texels[1] = above + columns.second;
+  square.texels[2] = below + columns.first;
+  square.texels[3] = below + columns.second;
+  square.right = x.fraction;
+  square.below = y.fraction;
 }
 
 /// read(texel) is linear.
@@ -116,16 +119,15 @@ constexpr float kMostLevels = 64;
 
 }  // namespace
 
-TexelTaps texel_taps(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler) {
+void find_taps(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler, TexelTaps& taps) {
   if (!(std::fabs(uv.x) < kLargestUv) || !(std::fabs(uv.y) < kLargestUv)) uv = Uv(0, 0);
   const bool is_minified = level > 0;
-  TexelTaps taps;
-  taps.has_coarse = false;
-  taps.coarse_share = 0;
-  taps.is_nearest = (is_minified ? sampler.minified : sampler.magnified) == TexelFilter::nearest;
-  const auto square = [&](std::size_t index) {
+  const bool is_nearest = (is_minified ? sampler.minified : sampler.magnified) == TexelFilter::nearest;
+  bool has_coarse = false;
+  float coarse_share = 0;
+  const auto find = [&](std::size_t index, TexelTaps::Square& square) {
     const TexturePyramid::Level& from = pyramid.levels[index];
-    return taps.is_nearest ? nearest_texel(from, uv, sampler) : four_texels(from, uv, sampler);
+    is_nearest ? find_nearest(from, uv, sampler, square) : find_four(from, uv, sampler, square);
   };
   const std::size_t last = pyramid.levels.size() - 1;
   std::size_t index = 0;
@@ -136,13 +138,15 @@ TexelTaps texel_taps(const TexturePyramid& pyramid, Uv uv, float level, const Te
     } else {
       const float whole = portable_floor(level);
       index = static_cast<std::size_t>(whole);
-      taps.has_coarse = sampler.levels == LevelFilter::linear;
-      taps.coarse_share = level - whole;
+      has_coarse = sampler.levels == LevelFilter::linear;
+      coarse_share = level - whole;
     }
   }
-  taps.fine = square(index);
-  if (taps.has_coarse) taps.coarse = square(index + 1);
-  return taps;
+  find(index, taps.fine);
+  if (has_coarse) find(index + 1, taps.coarse);
+  taps.has_coarse = has_coarse;
+  taps.coarse_share = coarse_share;
+  taps.is_nearest = is_nearest;
 }
 
 Rgba value_of(const TexturePyramid& pyramid, const TexelTaps& taps) {
@@ -160,7 +164,9 @@ Rgba value_of(const TexturePyramid& pyramid, const TexelTaps& taps) {
 }
 
 Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler) {
-  return value_of(pyramid, texel_taps(pyramid, uv, level, sampler));
+  TexelTaps taps;
+  find_taps(pyramid, uv, level, sampler, taps);
+  return value_of(pyramid, taps);
 }
 
 }  // namespace relook

@@ -22,6 +22,14 @@ namespace relook {
   return filter;
 }
 
+/// Asks for what is read of a node to sample lights.
+inline void prefetch(const RayNode& node) {
+  __builtin_prefetch(&node.object);
+  __builtin_prefetch(&node.ray.path);
+  __builtin_prefetch(&node.coverage);
+  __builtin_prefetch(&node.point.geometric);
+}
+
 /// Appends nodes to a block; the scene and the sample stay the same.
 class Grower {
  public:
@@ -132,21 +140,26 @@ class Grower {
   /// Traces the shadow segments of all nodes from `first` on: apart from the rays, and some hits at a time sampled, light
   /// by light, before they are traced, since like work in a row runs faster.
   void trace_lights(std::uint32_t first, GrowCounters& counters) {
-    constexpr std::size_t kHits = 16;
-    std::array<std::uint32_t, kHits> hits;
-    std::vector<ShadowSegment> segments(kHits * lights().size());  // hit by hit
+    std::array<std::uint32_t, kMostTogether> hits;
+    std::array<const RayNode*, kMostTogether> nodes;
+    std::vector<ShadowSegment> segments(kMostTogether * lights().size());  // light by light
     for (std::uint32_t index = first; index < b_.nodes.size();) {
       std::size_t count = 0;
-      for (; index < b_.nodes.size() && count < kHits; ++index) {
+      for (; index < b_.nodes.size() && count < kMostTogether; ++index) {
         const RayNode& node = b_.nodes[index];
-        if (!node.object.is_none() && is_lit(g_.scene.object(node.object), node)) hits[count++] = index;
+        if (node.object.is_none() || !is_lit(g_.scene.object(node.object), node)) continue;
+        nodes[count] = &node;
+        hits[count++] = index;
       }
       for (std::size_t light = 0; light < lights().size(); ++light)
-        for (std::size_t k = 0; k < count; ++k)
-          segments[k * lights().size() + light] = shadow_segment(b_.nodes[hits[k]], g_.scene.light(light));
+        shadow_segments(std::span(nodes).first(count), g_.scene.light(light),
+                        std::span(segments).subspan(light * kMostTogether, count));
+      // The block is larger than the nearest caches, and tracing uses them, too.
+      for (std::size_t ahead = index; ahead < std::min(index + kMostTogether, b_.nodes.size()); ++ahead)
+        prefetch(b_.nodes[ahead]);
       for (std::size_t k = 0; k < count; ++k)
         for (std::size_t light = 0; light < lights().size(); ++light) {
-          const ShadowSegment& segment = segments[k * lights().size() + light];
+          const ShadowSegment& segment = segments[light * kMostTogether + k];
           if (segment.faces) trace_light(hits[k], light, segment, counters);
         }
     }
