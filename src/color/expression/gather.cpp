@@ -15,34 +15,6 @@ void for_each_lane(const Gathering& from, const Read& read) {
     for (std::size_t lane = 0; lane < indices.size(); ++lane) read(lane, from.block.nodes[indices[lane]]);
 }
 
-/// Asks for what a later hit reads of its triangle: first for which vertices it has, then for these.
-class TriangleAhead {
- public:
-  explicit TriangleAhead(const Gathering& from) : from_(from) {}
-  /// ask(mesh, vertex) is called for the vertices of a hit.
-  template <class Ask>
-  void ask(std::size_t lane, const Ask& ask) const {
-    constexpr std::size_t kAhead = 6;
-    if (lane + 2 * kAhead < from_.indices.size()) with_hit(lane + 2 * kAhead, [&](const auto& hit) {
-      __builtin_prefetch(&from_.scene.object(hit.object).mesh->triangles[hit.hit.primitive]);
-    });
-    if (lane + kAhead < from_.indices.size()) with_hit(lane + kAhead, [&](const auto& hit) {
-      const Mesh& mesh = *from_.scene.object(hit.object).mesh;
-      for (const std::uint32_t vertex : mesh.triangles[hit.hit.primitive]) ask(mesh, vertex);
-    });
-  }
-
- private:
-  template <class Read>
-  void with_hit(std::size_t lane, const Read& read) const {
-    if (from_.are_filters)
-      read(from_.block.filters[from_.indices[lane]]);
-    else
-      read(from_.block.nodes[from_.indices[lane]]);
-  }
-  const Gathering& from_;
-};
-
 /// Fills a column from nodes, which alone have this input.
 template <class Read>
 void from_nodes(const Gathering& from, float* out, const Read& read) {
@@ -113,12 +85,7 @@ std::uint32_t mapping_key(const TextureSlot& slot) {
 }
 
 void gather_coordinates(const TextureSlot& slot, const Gathering& from, Column* out) {
-  const TriangleAhead ahead(from);
   for_each_lane(from, [&](std::size_t lane, const auto& hit) {
-    ahead.ask(lane, [&](const Mesh& mesh, std::uint32_t vertex) {
-      __builtin_prefetch(&mesh.positions[vertex]);
-      if (const auto& uv = mesh.uv[slot.texcoord]; !uv.empty()) __builtin_prefetch(&uv[vertex]);
-    });
     const TextureCoordinates at = texture_coordinates(from.scene.object(hit.object), hit.hit, hit.point.local, slot);
     for (int axis = 0; axis < 3; ++axis) out[axis].lanes[lane] = at.position[axis];
     out[3].lanes[lane] = at.area_ratio;
