@@ -181,8 +181,26 @@ EnvironmentLight::Parts EnvironmentLight::parts(const Direction& way) const {
 }
 
 std::optional<EnvironmentLight::Sun> EnvironmentLight::sample(Uv u) const {
-  if (suns_.empty()) return std::nullopt;
-  const GridDistribution::Choice cell = suns_.choose(static_cast<double>(u.y), static_cast<double>(u.x));
+  std::optional<Sun> sun;
+  sample({&u, 1}, {&sun, 1});
+  return sun;
+}
+
+void EnvironmentLight::sample(std::span<const Uv> u, std::span<std::optional<Sun>> suns) const {
+  std::ranges::fill(suns, std::nullopt);
+  if (suns_.empty()) return;
+  constexpr std::size_t kTogether = 16;
+  std::array<GridDistribution::Search, kTogether> searches;
+  for (std::size_t first = 0; first < u.size(); first += kTogether) {
+    const std::size_t count = std::min(kTogether, u.size() - first);
+    for (std::size_t k = 0; k < count; ++k)
+      searches[k] = suns_.search(static_cast<double>(u[first + k].y), static_cast<double>(u[first + k].x));
+    for (std::size_t k = 0; k < count; ++k) suns_.narrow(searches[k]);
+    for (std::size_t k = 0; k < count; ++k) suns[first + k] = sun_in(suns_.found(searches[k]));
+  }
+}
+
+std::optional<EnvironmentLight::Sun> EnvironmentLight::sun_in(const GridDistribution::Choice& cell) const {
   const auto corner = [&](std::size_t i) { return static_cast<double>(cell.corners[i]); };
   const double a = corner(0), b = corner(1), c = corner(2), d = corner(3);
   const double y = sample_linear(a + b, c + d, cell.rest_row);

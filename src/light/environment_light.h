@@ -13,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/math.h"
@@ -61,6 +62,8 @@ class EnvironmentLight {
 
   /// A direction to the suns for a point of the unit square. None without suns, and where rounding leads out of them.
   [[nodiscard]] std::optional<Sun> sample(Uv u) const;
+  /// The same for several points. Requires: as many suns as points.
+  void sample(std::span<const Uv> u, std::span<std::optional<Sun>> suns) const;
   /// The density per steradian with which sample() gives a unit direction; positive wherever suns() is, finite.
   [[nodiscard]] float density(const Direction& way) const;
 
@@ -68,6 +71,7 @@ class EnvironmentLight {
   /// `luminances`: of the clamped texels, [height][width].
   void weigh_suns(const std::vector<float>& luminances);
   [[nodiscard]] GridDistribution cells_of_suns() const;
+  [[nodiscard]] std::optional<Sun> sun_in(const GridDistribution::Choice& cell) const;
   /// The weight at a texel's place, not wrapped in x and clamped in y.
   [[nodiscard]] float weight(std::uint32_t column, std::int64_t row) const;
 

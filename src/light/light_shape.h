@@ -5,6 +5,8 @@
 // The density is a function of place and direction alone, the same bits from a sample and from a ray that happens to
 // cross, so that the two can be weighted against each other. A shape of size zero has no samples. Nothing is NaN.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -22,11 +24,23 @@ struct LightPoint {
   float density;        // per steradian, positive and finite
 };
 
+/// Whether what reaches up to `height` above a horizon, in metres, and is no farther away than three times `farthest`,
+/// is below it by more than floats round a direction.
+[[nodiscard]] inline bool is_surely_below(double height, double farthest) { return height < -1e-5 * farthest; }
+[[nodiscard]] inline double largest_of(const Wide& v) {
+  return std::max(std::max(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
+}
+
 /// Shines outwards and, for places inside, inwards. Sampled uniformly over the cone that it fills; from inside, over
 /// all directions.
 class SphereShape {
  public:
   SphereShape(const Point& center, float radius) : center_(center), radius_(radius) {}
+  [[nodiscard]] bool shines_at(const Point& /*from*/) const { return true; }
+  [[nodiscard]] bool is_below(const Point& from, const Direction& normal) const {
+    const Wide to = wide(center_) - wide(from);
+    return is_surely_below(to.dot(wide(normal)) + static_cast<double>(radius_), largest_of(to) + static_cast<double>(radius_));
+  }
   [[nodiscard]] std::optional<LightPoint> sample(const Point& from, const Uv& u) const;
   [[nodiscard]] float density(const Point& from, const Direction& way) const;
   [[nodiscard]] std::optional<float> cross(const Point& origin, const Direction& way) const;
@@ -52,6 +66,12 @@ class Patch {
   [[nodiscard]] Wide way_to(const PlanePoint& point, const Point& from) const;
   /// Of a place, in metres; negative behind the plane.
   [[nodiscard]] double height(const Point& from) const { return normal_.dot(wide(from) - wide(origin_)); }
+  /// Are all its points with coordinates in [-1, 1] below the horizon of a place?
+  [[nodiscard]] bool is_below(const Point& from, const Direction& normal) const {
+    const Wide to = wide(origin_) - wide(from), up = wide(normal);
+    return is_surely_below(to.dot(up) + std::fabs(x_.dot(up)) + std::fabs(y_.dot(up)),
+                           largest_of(to) + largest_of(x_) + largest_of(y_));
+  }
   /// 0 for directions that do not meet a side that shines.
   [[nodiscard]] float density(const Point& from, const Direction& way, double area, Sides sides) const;
 
@@ -74,6 +94,8 @@ class Patch {
 class RectShape {
  public:
   RectShape(const Point& center, const Direction& half_x, const Direction& half_y);
+  [[nodiscard]] bool shines_at(const Point& from) const { return patch_.height(from) > 0; }
+  [[nodiscard]] bool is_below(const Point& from, const Direction& normal) const { return patch_.is_below(from, normal); }
   [[nodiscard]] Direction normal() const { return narrow(patch_.normal()); }
   [[nodiscard]] std::optional<LightPoint> sample(const Point& from, const Uv& u) const;
   [[nodiscard]] float density(const Point& from, const Direction& way) const;
@@ -95,6 +117,8 @@ class RectShape {
 class DiskShape {
  public:
   DiskShape(const Point& center, const Direction& half_x, const Direction& half_y) : patch_(center, half_x, half_y) {}
+  [[nodiscard]] bool shines_at(const Point& from) const { return patch_.height(from) > 0; }
+  [[nodiscard]] bool is_below(const Point& from, const Direction& normal) const { return patch_.is_below(from, normal); }
   [[nodiscard]] Direction normal() const { return narrow(patch_.normal()); }
   [[nodiscard]] std::optional<LightPoint> sample(const Point& from, const Uv& u) const;
   [[nodiscard]] float density(const Point& from, const Direction& way) const;
@@ -110,6 +134,8 @@ class DiskShape {
 class TriangleShape {
  public:
   TriangleShape(const Point& a, const Point& b, const Point& c, Sides sides) : patch_(a, b - a, c - a), sides_(sides) {}
+  [[nodiscard]] bool shines_at(const Point& from) const { return sides_ == Sides::both || patch_.height(from) > 0; }
+  [[nodiscard]] bool is_below(const Point& from, const Direction& normal) const { return patch_.is_below(from, normal); }
   [[nodiscard]] Direction normal() const { return narrow(patch_.normal()); }
   [[nodiscard]] double area() const { return 0.5 * patch_.area(); }
   [[nodiscard]] std::optional<LightPoint> sample(const Point& from, const Uv& u) const;
@@ -126,6 +152,8 @@ class TriangleShape {
 class SkyDisc {
  public:
   SkyDisc(const Direction& axis, float versine);
+  [[nodiscard]] bool shines_at(const Point& /*from*/) const { return true; }
+  [[nodiscard]] bool is_below(const Point& /*from*/, const Direction& /*normal*/) const { return false; }
   [[nodiscard]] std::optional<LightPoint> sample(const Point& from, const Uv& u) const;
   [[nodiscard]] float density(const Point& from, const Direction& way) const;
   [[nodiscard]] std::optional<float> cross(const Point& origin, const Direction& way) const;
@@ -136,6 +164,15 @@ class SkyDisc {
 };
 
 using LightShape = std::variant<SphereShape, RectShape, DiskShape, TriangleShape, SkyDisc>;
+
+/// False: sample() has none for this place.
+[[nodiscard]] inline bool shines_at(const LightShape& shape, const Point& from) {
+  return std::visit([&](const auto& any) { return any.shines_at(from); }, shape);
+}
+/// True: no direction to a sample has a cosine above 0 with the normal, which is of length 1, in floats either.
+[[nodiscard]] inline bool is_below(const LightShape& shape, const Point& from, const Direction& normal) {
+  return std::visit([&](const auto& any) { return any.is_below(from, normal); }, shape);
+}
 
 /// None: the place sees no side that shines, or the shape has no size.
 [[nodiscard]] inline std::optional<LightPoint> sample(const LightShape& shape, const Point& from, const Uv& u) {

@@ -1,6 +1,8 @@
 #include "light/point_set.h"
 
 #include "base/hash.h"
+#include "base/vector_clones.h"
+#include "light/point_lanes.h"
 
 namespace relook {
 namespace {
@@ -46,7 +48,9 @@ constexpr std::uint32_t second_sobol_reversed(std::uint32_t index) {
   return index ^ (index >> 16U);
 }
 
-constexpr float unit_number(std::uint32_t bits) { return static_cast<float>(bits >> 8U) * 0x1p-24F; }
+constexpr float unit_number(std::uint32_t bits) {
+  return static_cast<float>(static_cast<std::int32_t>(bits >> 8U)) * 0x1p-24F;
+}
 
 /// Of the set that a number belongs to. `dimensions` keeps sets of points and of numbers apart.
 constexpr std::uint64_t set_seed(std::uint32_t pixel, std::uint64_t history, Purpose purpose, std::uint64_t name,
@@ -69,12 +73,30 @@ std::uint32_t pixel_key(std::uint32_t x, std::uint32_t y) {
   return key ^ (key >> 16U);
 }
 
-Uv sample_point(const SampleKey& key, std::uint64_t history, Purpose purpose, std::uint64_t name) {
-  const std::uint64_t seed = set_seed(key.pixel, history, purpose, name, 2);
-  const std::uint32_t index = shuffled(key.sample, seed);
+namespace {
+
+[[gnu::always_inline]] inline void find_point(std::uint32_t pixel, std::uint32_t sample, std::uint64_t history,
+                                              Purpose purpose, std::uint64_t name, float& out_x, float& out_y) {
+  const std::uint64_t seed = set_seed(pixel, history, purpose, name, 2);
+  const std::uint32_t index = shuffled(sample, seed);
   const std::uint32_t x = scrambled_from_below(index, mixed(seed + kGoldenGamma));
   const std::uint32_t y = scrambled_from_below(second_sobol_reversed(index), mixed(seed + 2 * kGoldenGamma));
-  return {unit_number(reversed(x)), unit_number(reversed(y))};
+  out_x = unit_number(reversed(x));
+  out_y = unit_number(reversed(y));
+}
+
+}  // namespace
+
+Uv sample_point(const SampleKey& key, std::uint64_t history, Purpose purpose, std::uint64_t name) {
+  Uv point;
+  find_point(key.pixel, key.sample, history, purpose, name, point.x, point.y);
+  return point;
+}
+
+RELOOK_VECTOR_CLONES
+void sample_points(const PointKeys& keys, Purpose purpose, std::uint64_t name, PointLanes& points) {
+  for (std::size_t lane = 0; lane < kPointLanes; ++lane)
+    find_point(keys.pixel[lane], keys.sample[lane], keys.history[lane], purpose, name, points.x[lane], points.y[lane]);
 }
 
 float sample_number(const SampleKey& key, std::uint64_t history, Purpose purpose, std::uint64_t name) {

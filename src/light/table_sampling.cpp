@@ -20,11 +20,15 @@ void append_starts(std::size_t n, const End& end, std::vector<std::uint32_t>& st
   }
 }
 
+/// The n-th of [0, 1) in which a number lies.
+std::size_t part_of(double number, std::size_t n) {
+  return std::min(static_cast<std::size_t>(number * static_cast<double>(n)), n - 1);
+}
+
+/// `low`, `high`: the starts of the number's part and of the next one.
 template <class End>
-DiscreteDistribution::Choice chosen(double number, std::size_t n, const End& end, const std::uint32_t* starts) {
-  const auto part = static_cast<std::size_t>(number * static_cast<double>(n));
+DiscreteDistribution::Choice chosen(double number, std::size_t n, const End& end, std::size_t low, std::size_t high) {
   const double total = end(n - 1), place = number * total;
-  std::size_t low = starts[std::min(part, n - 1)], high = starts[std::min(part + 1, n)];
   // The part may be a neighbour's by rounding, and an end may be as far as the last weight.
   while (low > 0 && end(low - 1) > place) --low;
   while (high + 1 < n && end(high) <= place) ++high;
@@ -54,7 +58,8 @@ DiscreteDistribution::DiscreteDistribution(std::span<const double> weights) {
 }
 
 DiscreteDistribution::Choice DiscreteDistribution::choose(double number) const {
-  return chosen(number, ends_.size(), [this](std::size_t i) { return ends_[i]; }, starts_.data());
+  const std::uint32_t* start = &starts_[part_of(number, ends_.size())];
+  return chosen(number, ends_.size(), [this](std::size_t i) { return ends_[i]; }, start[0], start[1]);
 }
 
 double DiscreteDistribution::probability(std::uint32_t index) const {
@@ -77,15 +82,36 @@ GridDistribution::GridDistribution(std::span<const Cell> cells) {
   rows_ = DiscreteDistribution(totals);
 }
 
-GridDistribution::Choice GridDistribution::choose(double number_row, double number_column) const {
+GridDistribution::Search GridDistribution::search(double number_row, double number_column) const {
   const DiscreteDistribution::Choice row = rows_.choose(number_row);
   const Row& table = row_tables_[row.index];
+  const std::size_t start = table.first + row.index + part_of(number_column, table.size);
+  __builtin_prefetch(&starts_[start]);
+  return {row, number_column, start, 0, 0};
+}
+
+void GridDistribution::narrow(Search& search) const {
+  const Part* parts = &parts_[row_tables_[search.row.index].first];
+  search.low = starts_[search.start];
+  search.high = starts_[search.start + 1];
+  __builtin_prefetch(parts + search.low);
+  __builtin_prefetch(parts + search.high);
+}
+
+GridDistribution::Choice GridDistribution::found(const Search& search) const {
+  const Row& table = row_tables_[search.row.index];
   const Part* parts = &parts_[table.first];
   const DiscreteDistribution::Choice column = chosen(
-      number_column, table.size, [parts](std::size_t k) { return parts[k].end; }, &starts_[table.first + row.index]);
+      search.number, table.size, [parts](std::size_t k) { return parts[k].end; }, search.low, search.high);
   const Part& part = parts[column.index];
-  return {table.row,    part.column, row.probability * column.probability, row.rest, column.rest,
-          part.corners};
+  return {table.row,       part.column,  search.row.probability * column.probability,
+          search.row.rest, column.rest, part.corners};
+}
+
+GridDistribution::Choice GridDistribution::choose(double number_row, double number_column) const {
+  Search one = search(number_row, number_column);
+  narrow(one);
+  return found(one);
 }
 
 double sample_linear(double a, double b, double number) {

@@ -61,6 +61,18 @@ class GridDistribution {
   /// Numbers in [0, 1). Requires !empty().
   [[nodiscard]] Choice choose(double number_row, double number_column) const;
 
+  /// The same in three steps, each of which asks for the memory that the next one reads: several choices side by side
+  /// wait for it together.
+  struct Search {
+    DiscreteDistribution::Choice row;
+    double number = 0;           // for the column
+    std::size_t start = 0;       // into `starts_`
+    std::size_t low = 0, high = 0;  // parts of the row, after narrow()
+  };
+  [[nodiscard]] Search search(double number_row, double number_column) const;
+  void narrow(Search& search) const;
+  [[nodiscard]] Choice found(const Search& search) const;
+
  private:
   /// A cell that may be chosen, all that a choice reads of it in one place: tables are larger than a processor's caches.
   struct Part {

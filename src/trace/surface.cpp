@@ -78,6 +78,10 @@ Direction smooth_lift(const Mesh& mesh, const Hit& hit, const Point& local, bool
 SurfacePoint surface_point(const RayObject& object, const Hit& hit, Direction direction) {
   const Mesh& mesh = *object.mesh;
   const auto& triangle = mesh.triangles[hit.primitive];
+  for (const std::uint32_t vertex : triangle) {  // what is read behind the positions, here and by textures
+    if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[vertex]);
+    if (!mesh.uv[0].empty()) __builtin_prefetch(&mesh.uv[0][vertex]);
+  }
   SurfacePoint point;
   point.local = interpolate(mesh.positions, triangle, hit);
   point.position = to_world(object.to_world, point.local);
@@ -125,13 +129,19 @@ Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at)
   return Point(uv.x, uv.y, 0);
 }
 
-Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
-  if (slot.kind == TextureKind::procedural) return evaluate(slot.procedural, procedural_position(slot, at));
+void find_taps(const TextureSlot& slot, const TextureCoordinates& at, float footprint, TexelTaps& taps) {
   const auto& base = slot.pyramid->levels.front();
   const float texels = static_cast<float>(base.width) * static_cast<float>(base.height) *
                        std::fabs(slot.scale.x * slot.scale.y) * at.area_ratio;
   const float level = 0.5F * portable_log2(texels * footprint * footprint);
-  return sample(*slot.pyramid, transformed_uv(slot, at.position), level, slot.sampler);
+  find_taps(*slot.pyramid, transformed_uv(slot, at.position), level, slot.sampler, taps);
+}
+
+Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint) {
+  if (slot.kind == TextureKind::procedural) return evaluate(slot.procedural, procedural_position(slot, at));
+  TexelTaps taps;
+  find_taps(slot, at, footprint, taps);
+  return value_of(*slot.pyramid, taps);
 }
 
 namespace {

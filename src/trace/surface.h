@@ -3,6 +3,7 @@
 #pragma once
 #include "base/math.h"
 #include "physics/normal_map.h"
+#include "scene/texture/texel_taps.h"
 #include "trace/ray_scene.h"
 #include "trace/tree/ray_tree.h"
 
@@ -33,6 +34,9 @@ struct TextureCoordinates {
 /// The value of a texture slot. `footprint`: ray-cone width over the cosine of incidence, metres. Requires kind !=
 /// none.
 [[nodiscard]] Rgba texture_value(const TextureSlot& slot, const TextureCoordinates& at, float footprint);
+
+/// Finds its texels and their shares. Requires kind image.
+void find_taps(const TextureSlot& slot, const TextureCoordinates& at, float footprint, TexelTaps& taps);
 
 /// Where a procedural texture is evaluated. Requires kind procedural.
 [[nodiscard]] Point procedural_position(const TextureSlot& slot, const TextureCoordinates& at);

@@ -101,6 +101,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
     return;
   }
+  __builtin_prefetch(&placed.object->mesh->triangles[candidate.hit.primitive]);  // surface_point() reads it next
   query.nearest = candidate;
   RTCRayN_tfar(args->ray, 1, 0) = reach(candidate.t, query);
 }

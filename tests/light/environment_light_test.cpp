@@ -217,6 +217,23 @@ TEST(EnvironmentLight, SamplesFollowTheirDensity) {
   for (std::size_t i = 0; i < shares.size(); ++i) ASSERT_NEAR(shares[i], expected[i], 0.0005 + 0.01 * expected[i]) << i;
 }
 
+TEST(EnvironmentLight, SamplesSideBySideAreThoseOfSinglePoints) {
+  const EnvironmentLight light(hard_image()), without(nullptr);
+  std::vector<Uv> points;
+  for (std::uint32_t i = 0; i < 37; ++i) points.push_back(hammersley_point(i, 37));
+  std::vector<std::optional<EnvironmentLight::Sun>> suns(points.size());
+  light.sample(points, suns);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto alone = light.sample(points[i]);
+    ASSERT_EQ(suns[i].has_value(), alone.has_value());
+    if (!alone) continue;
+    EXPECT_EQ(suns[i]->way, alone->way);
+    EXPECT_EQ(suns[i]->density, alone->density);
+  }
+  without.sample(points, suns);
+  EXPECT_TRUE(std::ranges::none_of(suns, [](const auto& sun) { return sun.has_value(); }));
+}
+
 TEST(EnvironmentLight, SamplesEstimateTheSuns) {
   for (const SkyImage& image : {hard_image(), image_with_suns(64, 32, 20000, {{30, 9}})}) {
     const EnvironmentLight light(image);

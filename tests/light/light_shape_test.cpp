@@ -95,6 +95,24 @@ TEST(LightShape, SamplesAreWhereRaysCross) {
   }
 }
 
+TEST(LightShape, WhatCannotFaceAPlaceHasNoSampleAboveItsHorizon) {
+  const ShapeFrame any = shape_frame_around({0, 0, 1});
+  int below = 0, dark = 0;
+  for (const Case& it : cases())
+    for (std::uint32_t i = 0; i < 4000; ++i) {
+      const Direction normal = narrow(cone_direction(any, 2, random_point(i)));
+      const Uv at = random_point(i + 4000), height = random_point(i + 8000);
+      const Point from = it.from + Point(at.x - 0.5F, at.y - 0.5F, height.x - 0.5F) * (i % 2 == 0 ? 0.01F : 6.0F);
+      const auto point = sample(it.shape, from, even_point(i));
+      dark += shines_at(it.shape, from) ? 0 : 1;
+      below += is_below(it.shape, from, normal) ? 1 : 0;
+      EXPECT_TRUE(!point || shines_at(it.shape, from)) << it.name;
+      EXPECT_TRUE(!point || !is_below(it.shape, from, normal) || normal.dot(point->direction) <= 0) << it.name;
+    }
+  EXPECT_GT(below, 10000);
+  EXPECT_GT(dark, 3000);
+}
+
 TEST(LightShape, SamplesHaveTheirDensity) {
   // Of directions, the share that falls into a half space and a cone must be what the density says.
   const ShapeFrame any = shape_frame_around({0, 0, 1});

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "light/point_lanes.h"
+
 namespace relook {
 namespace {
 
@@ -147,6 +149,19 @@ TEST(PointSet, HasTheseBits) {
   EXPECT_EQ(pixel_key(3, 5), 0xBC312E6FU);
   EXPECT_EQ(name_hash("key"), 0xBBEA0D63A05165E3U);
   EXPECT_EQ(child_history(0, 2), 0x6C45D188009454FU);
+}
+
+TEST(PointSet, LanesHaveTheBitsOfSinglePoints) {
+  PointKeys keys;
+  for (std::uint32_t lane = 0; lane < kPointLanes; ++lane)
+    keys.set(lane, {pixel_key(lane, 3 * lane), 1000 * lane + 7}, child_history(lane % 5, lane));
+  for (const Purpose purpose : kPurposes) {
+    PointLanes points;
+    sample_points(keys, purpose, name_hash("light/a"), points);
+    for (std::size_t lane = 0; lane < kPointLanes; ++lane)
+      EXPECT_EQ(points.at(lane), sample_point({keys.pixel[lane], keys.sample[lane]}, keys.history[lane], purpose,
+                                              name_hash("light/a")));
+  }
 }
 
 TEST(PointSet, PixelsHaveKeysOfTheirOwn) {

@@ -6,6 +6,7 @@
 #include "base/portable_math.h"
 #include "base/vector_clones.h"
 #include "color/expression/field.h"
+#include "color/expression/gather.h"
 #include "physics/sheen.h"
 #include "scene/texture/procedural.h"
 #include "trace/surface.h"
@@ -30,8 +31,44 @@ void set_lane(Column* result, std::size_t lane, const Rgba& value) {
   for (int channel = 0; channel < 4; ++channel) result[channel].lanes[lane] = value[channel];
 }
 
-void look_up_texture(const Kernel::Step& step, const TextureSlot& slot, Scratch& scratch, std::size_t lanes) {
-  Column* result = scratch.own(step.out, 4);
+bool read_alike(const TextureSlot& a, const TextureSlot& b) {
+  return a.kind == TextureKind::image && b.kind == TextureKind::image && a.pyramid == b.pyramid &&
+         a.sampler == b.sampler && mapping_key(a) == mapping_key(b) && a.offset == b.offset && a.scale == b.scale &&
+         a.rotation == b.rotation;
+}
+
+/// Slots with the same have the same texels at every hit: the first of the material that is read like this one. Not that
+/// of any mapping.
+std::uint32_t texel_key(const Material& material, Slot slot) {
+  std::size_t first = 0;
+  while (first < static_cast<std::size_t>(slot) &&
+         !read_alike(material.slot(static_cast<Slot>(first)), material.slot(slot)))
+    ++first;
+  return 0x80000000U | static_cast<std::uint32_t>(first);
+}
+
+/// Some lanes are placed, and their texels asked for, before the first is read.
+void look_up_image(const Kernel::Step& step, const TextureSlot& slot, const Scratch& scratch, std::size_t lanes,
+                   Column* result) {
+  constexpr std::size_t kAhead = 16;
+  std::array<TexelTaps, kAhead> taps;
+  for (std::size_t first = 0; first < lanes; first += kAhead) {
+    const std::size_t count = std::min(kAhead, lanes - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t lane = first + k;
+      find_taps(slot, coordinates(step, scratch, lane), scratch.at[step.in[4]][lane], taps[k]);
+      prefetch(*slot.pyramid, taps[k]);
+    }
+    for (std::size_t k = 0; k < count; ++k) set_lane(result, first + k, value_of(*slot.pyramid, taps[k]));
+  }
+}
+
+/// Every lookup of a kernel has the same footprint, that of the hit.
+void look_up_texture(const Kernel::Step& step, const Material& material, Scratch& scratch, std::size_t lanes) {
+  const TextureSlot& slot = material.slot(step.payload.slot());
+  Column* result = scratch.share(step.out, texel_key(material, step.payload.slot()));
+  if (result == nullptr) return;
+  if (slot.kind == TextureKind::image) return look_up_image(step, slot, scratch, lanes, result);
   for (std::size_t lane = 0; lane < lanes; ++lane)
     set_lane(result, lane, texture_value(slot, coordinates(step, scratch, lane), scratch.at[step.in[4]][lane]));
 }
@@ -152,7 +189,7 @@ void run_function(const Kernel::Step& step, const Parameters& parameters, Scratc
     case Op::procedural_weight:
       return weigh_procedural(step, parameters.slot(step), scratch, lanes);
     case Op::texture:
-      return look_up_texture(step, parameters.slot(step), scratch, lanes);
+      return look_up_texture(step, parameters.scene.material(parameters.material), scratch, lanes);
     case Op::environment_map:
       return look_around(step, parameters.scene.environment, scratch, lanes);
     default:

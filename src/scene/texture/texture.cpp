@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/portable_math.h"
+#include "scene/texture/texel_taps.h"
 
 namespace relook {
 namespace {
@@ -44,42 +45,70 @@ std::uint32_t wrapped(std::int64_t i, std::uint32_t size, Wrap wrap) {
   return static_cast<std::uint32_t>(r < n ? r : 2 * n - 1 - r);
 }
 
-struct Texels {
-  const TexturePyramid& pyramid;
-  const ByteTable& color;  // of the first three channels
-
-  explicit Texels(const TexturePyramid& p)
-      : pyramid(p), color(p.format == TexelFormat::srgb8 ? linear_of_srgb() : linear_of_byte()) {}
-
-  [[nodiscard]] Rgba at(const TexturePyramid::Level& level, std::uint32_t x, std::uint32_t y) const {
-    const std::size_t i = (level.offset + std::uint64_t{y} * level.width + x) * 4;
-    if (pyramid.format == TexelFormat::float32) {
-      const float* t = &pyramid.texels32[i];
-      return Rgba(t[0], t[1], t[2], t[3]);
-    }
-    const std::uint8_t* t = &pyramid.texels8[i];
-    return Rgba(color[t[0]], color[t[1]], color[t[2]], linear_of_byte()[t[3]]);
-  }
+struct Pair {
+  std::uint32_t first, second;
 };
-
-Rgba nearest_texel(const Texels& texels, const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler) {
-  const float x = uv.x * static_cast<float>(level.width), y = uv.y * static_cast<float>(level.height);
-  return texels.at(level, wrapped(static_cast<std::int64_t>(std::floor(x)), level.width, sampler.wrap_s),
-                   wrapped(static_cast<std::int64_t>(std::floor(y)), level.height, sampler.wrap_t));
+/// A texel coordinate and the next one, in [0, size).
+Pair wrapped_pair(std::int64_t i, std::uint32_t size, Wrap wrap) {
+  if (wrap != Wrap::repeat) return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap)};
+  const bool is_power_of_two = (size & (size - 1)) == 0;
+  const std::uint32_t first = is_power_of_two ? static_cast<std::uint32_t>(i) & (size - 1) : wrapped(i, size, wrap);
+  return {first, first + 1 == size ? 0 : first + 1};
 }
 
-Rgba bilinear(const Texels& texels, const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler) {
-  const float cx = uv.x * static_cast<float>(level.width) - 0.5F;
-  const float cy = uv.y * static_cast<float>(level.height) - 0.5F;
-  const float fx = std::floor(cx), fy = std::floor(cy);
-  const auto ix = static_cast<std::int64_t>(fx), iy = static_cast<std::int64_t>(fy);
-  const std::uint32_t x0 = wrapped(ix, level.width, sampler.wrap_s), x1 = wrapped(ix + 1, level.width, sampler.wrap_s);
-  const std::uint32_t y0 = wrapped(iy, level.height, sampler.wrap_t);
-  const std::uint32_t y1 = wrapped(iy + 1, level.height, sampler.wrap_t);
-  const float u = cx - fx, v = cy - fy;
-  const Rgba top = texels.at(level, x0, y0) * (1.0F - u) + texels.at(level, x1, y0) * u;
-  const Rgba bottom = texels.at(level, x0, y1) * (1.0F - u) + texels.at(level, x1, y1) * u;
-  return top * (1.0F - v) + bottom * v;
+/// A number without its fraction. Requires |x| < 2^63.
+struct Floor {
+  std::int64_t whole;
+  float fraction;
+};
+Floor floor_of(float x) {
+  auto whole = static_cast<std::int64_t>(x);
+  float rounded = static_cast<float>(whole);
+  const bool is_above = rounded > x;
+  whole -= is_above ? 1 : 0;
+  rounded -= is_above ? 1.0F : 0.0F;
+  return {whole, x - rounded};
+}
+
+void find_nearest(const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler,
+                  TexelTaps::Square& square) {
+  const float x = uv.x * static_cast<float>(level.width), y = uv.y * static_cast<float>(level.height);
+  const std::uint64_t row = wrapped(floor_of(y).whole, level.height, sampler.wrap_t);
+  square.texels[0] = level.offset + row * level.width + wrapped(floor_of(x).whole, level.width, sampler.wrap_s);
+}
+
+void find_four(const TexturePyramid::Level& level, Uv uv, const TextureSampler& sampler, TexelTaps::Square& square) {
+  const Floor x = floor_of(uv.x * static_cast<float>(level.width) - 0.5F);
+  const Floor y = floor_of(uv.y * static_cast<float>(level.height) - 0.5F);
+  const Pair columns = wrapped_pair(x.whole, level.width, sampler.wrap_s);
+  const Pair rows = wrapped_pair(y.whole, level.height, sampler.wrap_t);
+  const std::size_t above = level.offset + std::uint64_t{rows.first} * level.width;
+  const std::size_t below = level.offset + std::uint64_t{rows.second} * level.width;
+  square.texels[0] = above + columns.first;
+  square.texels[1] = above + columns.second;
+  square.texels[2] = below + columns.first;
+  square.texels[3] = below + columns.second;
+  square.right = x.fraction;
+  square.below = y.fraction;
+}
+
+/// read(texel) is linear.
+template <class Read>
+Rgba mean_of(const TexelTaps::Square& square, bool is_nearest, const Read& read) {
+  const Rgba first = read(square.texels[0]);
+  if (is_nearest) return first;
+  const float u = square.right, v = square.below;
+  const Rgba above = first * (1.0F - u) + read(square.texels[1]) * u;
+  const Rgba below = read(square.texels[2]) * (1.0F - u) + read(square.texels[3]) * u;
+  return above * (1.0F - v) + below * v;
+}
+
+template <class Read>
+Rgba mean_of(const TexelTaps& taps, const Read& read) {
+  const Rgba fine = mean_of(taps.fine, taps.is_nearest, read);
+  if (!taps.has_coarse) return fine;
+  const Rgba coarse = mean_of(taps.coarse, taps.is_nearest, read);
+  return fine * (1.0F - taps.coarse_share) + coarse * taps.coarse_share;
 }
 
 /// From here on a texel coordinate has hardly a fraction left: such lookups read uv (0, 0).
@@ -90,26 +119,54 @@ constexpr float kMostLevels = 64;
 
 }  // namespace
 
-Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler) {
+void find_taps(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler, TexelTaps& taps) {
   if (!(std::fabs(uv.x) < kLargestUv) || !(std::fabs(uv.y) < kLargestUv)) uv = Uv(0, 0);
-  const Texels texels(pyramid);
   const bool is_minified = level > 0;
-  const TexelFilter filter = is_minified ? sampler.minified : sampler.magnified;
-  const auto read = [&](std::size_t index) {
+  const bool is_nearest = (is_minified ? sampler.minified : sampler.magnified) == TexelFilter::nearest;
+  bool has_coarse = false;
+  float coarse_share = 0;
+  const auto find = [&](std::size_t index, TexelTaps::Square& square) {
     const TexturePyramid::Level& from = pyramid.levels[index];
-    return filter == TexelFilter::nearest ? nearest_texel(texels, from, uv, sampler)
-                                          : bilinear(texels, from, uv, sampler);
+    is_nearest ? find_nearest(from, uv, sampler, square) : find_four(from, uv, sampler, square);
   };
-  if (!is_minified || sampler.levels == LevelFilter::full) return read(0);
-  if (sampler.levels == LevelFilter::nearest) level = portable_floor(std::fmin(level, kMostLevels) + 0.5F);
-  if (level >= static_cast<float>(pyramid.levels.size() - 1)) return read(pyramid.levels.size() - 1);
-  const float whole = portable_floor(level);
-  const auto index = static_cast<std::size_t>(whole);
-  const float t = level - whole;
-  if (sampler.levels == LevelFilter::nearest) return read(index);
-  const Rgba fine = read(index);
-  const Rgba coarse = read(index + 1);
-  return fine * (1.0F - t) + coarse * t;
+  const std::size_t last = pyramid.levels.size() - 1;
+  std::size_t index = 0;
+  if (is_minified && sampler.levels != LevelFilter::full) {
+    if (sampler.levels == LevelFilter::nearest) level = portable_floor(std::fmin(level, kMostLevels) + 0.5F);
+    if (level >= static_cast<float>(last)) {
+      index = last;
+    } else {
+      const float whole = portable_floor(level);
+      index = static_cast<std::size_t>(whole);
+      has_coarse = sampler.levels == LevelFilter::linear;
+      coarse_share = level - whole;
+    }
+  }
+  find(index, taps.fine);
+  if (has_coarse) find(index + 1, taps.coarse);
+  taps.has_coarse = has_coarse;
+  taps.coarse_share = coarse_share;
+  taps.is_nearest = is_nearest;
+}
+
+Rgba value_of(const TexturePyramid& pyramid, const TexelTaps& taps) {
+  if (pyramid.format == TexelFormat::float32)
+    return mean_of(taps, [texels = pyramid.texels32.data()](std::size_t texel) {
+      const float* t = texels + texel * 4;
+      return Rgba(t[0], t[1], t[2], t[3]);
+    });
+  const ByteTable& alpha = linear_of_byte();
+  const ByteTable& color = pyramid.format == TexelFormat::srgb8 ? linear_of_srgb() : alpha;
+  return mean_of(taps, [&, texels = pyramid.texels8.data()](std::size_t texel) {
+    const std::uint8_t* t = texels + texel * 4;
+    return Rgba(color[t[0]], color[t[1]], color[t[2]], alpha[t[3]]);
+  });
+}
+
+Rgba sample(const TexturePyramid& pyramid, Uv uv, float level, const TextureSampler& sampler) {
+  TexelTaps taps;
+  find_taps(pyramid, uv, level, sampler, taps);
+  return value_of(pyramid, taps);
 }
 
 }  // namespace relook

@@ -17,11 +17,6 @@ Point bounds_coordinates(const Mesh& mesh, const Point& local, int axis) {
 
 }  // namespace
 
-Mapping effective_mapping(const Mesh& mesh, const TextureSlot& slot) {
-  if (slot.mapping != Mapping::uv || !mesh.uv[slot.texcoord].empty()) return slot.mapping;
-  return slot.kind == TextureKind::procedural ? Mapping::solid : Mapping::planar;
-}
-
 Point projected_coordinates(const Mesh& mesh, const Point& local, Mapping mapping, int axis) {
   const Point unit = bounds_coordinates(mesh, local, axis);
   if (mapping == Mapping::planar) return Point(unit.x, unit.y, 0);
@@ -30,24 +25,6 @@ Point projected_coordinates(const Mesh& mesh, const Point& local, Mapping mappin
   if (mapping == Mapping::cylindrical) return Point(around, 1.0F - unit.z, 0);
   const float length = std::sqrt(centred.dot(centred));
   return Point(around, 0.5F - 2.0F * portable_asin_turns(length > 0 ? centred.z / length : 0), 0);
-}
-
-Point vertex_coordinates(const Mesh& mesh, const TextureSlot& slot, Mapping mapping, std::uint32_t vertex) {
-  if (mapping == Mapping::solid) return mesh.positions[vertex];
-  if (mapping == Mapping::uv) return Point(mesh.uv[slot.texcoord][vertex].x, mesh.uv[slot.texcoord][vertex].y, 0);
-  return projected_coordinates(mesh, mesh.positions[vertex], mapping, slot.axis);
-}
-
-Rotation rotation_of(const TextureSlot& slot) {
-  constexpr float kTurnsPerRadian = 0.15915494F;
-  const float turns = slot.rotation * kTurnsPerRadian;
-  return {portable_sin_turns(turns), portable_sin_turns(turns + 0.25F)};
-}
-
-Uv transformed_uv(const TextureSlot& slot, const Point& coordinates) {
-  const auto [s, c] = rotation_of(slot);
-  const float x = coordinates.x * slot.scale.x, y = coordinates.y * slot.scale.y;
-  return Uv(c * x + s * y + slot.offset.x, -s * x + c * y + slot.offset.y);
 }
 
 }  // namespace relook

@@ -1,6 +1,7 @@
 // Samples of lights with a size: a place that is lit in, a direction to the light out, and how likely it was.
 #pragma once
 #include <optional>
+#include <span>
 
 #include "light/point_set.h"
 #include "trace/tree/ray_tree.h"
@@ -21,6 +22,9 @@ struct LightSample {
 /// Of a light with a size at a hit. None: the sample does not shine here, or the light's rate left it out. A pure
 /// function of the hit's place, its sample and history, and the light.
 [[nodiscard]] std::optional<LightSample> sample_light(const RayLight& light, const RayNode& node);
+/// The same for several hits, of which suns are looked up side by side. Requires: as many samples as hits.
+void sample_light(const RayLight& light, std::span<const RayNode* const> nodes,
+                  std::span<std::optional<LightSample>> samples);
 /// What comes from a sample at unit colour and intensity; of point and spot without range and cone.
 [[nodiscard]] Color radiance_of(const RayLight& light, const LightSample& sample);
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "trace/tree/tree_block.h"
 
@@ -22,7 +23,10 @@ struct ShadowSegment {
     return ray;
   }
 };
+inline constexpr std::size_t kMostTogether = 16;
 [[nodiscard]] ShadowSegment shadow_segment(const RayNode& node, const RayLight& light);
+/// The same from several hits, at most kMostTogether. Requires: as many segments as hits.
+void shadow_segments(std::span<const RayNode* const> nodes, const RayLight& light, std::span<ShadowSegment> segments);
 /// False where no light is gathered and no segments are kept: the inner side of a volume, and where rays only gather or
 /// pass.
 [[nodiscard]] inline bool is_lit(const RayObject& object, const RayNode& node) {

@@ -8,6 +8,7 @@
 #include "physics/phong_sample.h"
 #include "physics/rough_refraction.h"
 #include "trace/tree/tree_block.h"
+#include "trace/vertex_texels.h"
 
 namespace relook {
 namespace {
@@ -66,7 +67,8 @@ float channel_ior(const SurfaceOptics& optics, Channel channel) {
   return channel == Channel::blue ? blue_ior(optics.ior, optics.dispersion) : optics.ior;
 }
 
-VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal& normal, const Normal& coat_normal) {
+VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal& normal, const Normal& coat_normal,
+                     const VertexTexels& texels) {
   VertexLobes lobes;
   const Material& material = *object.material;
   const LobeSet set = lobe_set(object, node.point.inside);
@@ -88,10 +90,10 @@ VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal&
     lobes.coat_base = basis_about(coat_normal);
     lobes.coat_view = lobes.coat_base.to_local(view);
     coat = coat_reflectance(schlick(std::fmax(lobes.coat_view.z, kLeastCosine)));
-    const Rgba texel = texel_at(node, object, material.slot(Slot::clearcoat_roughness));
+    const Rgba texel = texels.at(Slot::clearcoat_roughness);
     set_glossy(material.clearcoat_roughness * texel.g, floor, lobes.coat_bucket, lobes.coat);
   }
-  const Rgba texel = texel_at(node, object, material.slot(Slot::metallic_roughness));
+  const Rgba texel = texels.at(Slot::metallic_roughness);
   const float roughness = material.roughness * texel.g;
   if (set.transmission) set_transmission(node, object, roughness, lobes);
   if (set.specular) {

@@ -14,6 +14,7 @@
 namespace relook {
 
 struct RayNode;
+class VertexTexels;
 
 struct VertexLobes {
   LobeShares shares{0, 0, 0};
@@ -48,9 +49,9 @@ struct VertexLobes {
   [[nodiscard]] float transmitted_density(const Direction& way) const;  // of a local one, without the share
 };
 
-/// Of a hit with everything that follows from it. `normal`, `coat_normal`: with their maps.
+/// Of a hit with everything that follows from it. `normal`, `coat_normal`: with their maps; `texels`: of the node.
 [[nodiscard]] VertexLobes lobes_at(const RayNode& node, const RayObject& object, const Normal& normal,
-                                   const Normal& coat_normal);
+                                   const Normal& coat_normal, const VertexTexels& texels);
 /// Which lobes an object has on that side of its surface.
 [[nodiscard]] LobeSet lobe_set(const RayObject& object, bool inside);
 /// The index of refraction for a channel; all of them: that of the middle.

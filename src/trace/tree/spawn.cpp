@@ -6,6 +6,7 @@
 #include "physics/mirror.h"
 #include "trace/shadow/shadow_segment.h"
 #include "trace/tree/lobes.h"
+#include "trace/vertex_texels.h"
 
 namespace relook {
 namespace {
@@ -19,11 +20,22 @@ float coat_term(float cosine) {
   return coat_reflectance(m * m * m * m * m);
 }
 
-Normal normal_of_slot(const RayNode& node, const RayObject& object, Slot slot, float scale) {
+Normal normal_of_slot(const RayNode& node, const RayObject& object, const VertexTexels& texels, Slot slot,
+                      float scale) {
   const TextureSlot& map = object.material->slot(slot);
   if (map.kind == TextureKind::none) return node.point.shading;
-  const Rgba texel = texel_at(node, object, map);
-  return mapped_normal(tangent_frame(object, node.hit, node.point, map), node.point, texel, scale);
+  const TangentFrame frame = tangent_frame(object, node.hit, node.point, map);
+  return mapped_normal(frame, node.point, texels.at(slot), scale);
+}
+Normal base_normal(const RayNode& node, const RayObject& object, const VertexTexels& texels) {
+  return normal_of_slot(node, object, texels, Slot::normal, object.material->normal_scale);
+}
+Normal coat_normal(const RayNode& node, const RayObject& object, const VertexTexels& texels) {
+  return normal_of_slot(node, object, texels, Slot::clearcoat_normal, object.material->clearcoat_normal_scale);
+}
+/// Of what a hit of the path integrator reads to find its lobes.
+VertexTexels texels_of_lobes(const RayNode& node, const RayObject& object) {
+  return {node, object, {Slot::normal, Slot::metallic_roughness, Slot::clearcoat_normal, Slot::clearcoat_roughness}};
 }
 
 /// Collects the rays of one hit.
@@ -81,10 +93,10 @@ class Spawner {
 /// A hit on its way to the rays that leave it: its normal with the map, cosines, and how much it reflects.
 class Interface {
  public:
-  Interface(const RayNode& node, const RayObject& object)
+  Interface(const RayNode& node, const RayObject& object, const VertexTexels& texels)
       : node_(node),
         optics_(object.optics),
-        normal_(normal_of_slot(node, object, Slot::normal, object.material->normal_scale)),
+        normal_(base_normal(node, object, texels)),
         cosine_(std::fmax(-node.ray.direction.dot(normal_), kLeastCosine)),
         // From the inside of a smooth solid, light leaves where the triangle or its vertex normals let it.
         flat_cosine_(node.point.inside ? -node.ray.direction.dot(node.point.geometric) : 0.0F),
@@ -146,21 +158,18 @@ class Interface {
   bool parts_;
 };
 
-Normal coat_normal(const RayNode& node, const RayObject& object) {
-  return normal_of_slot(node, object, Slot::clearcoat_normal, object.material->clearcoat_normal_scale);
-}
-
 void spawn_whitted(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
   const SurfaceOptics& optics = object.optics;
   Spawner spawner(node, object, node.ray.generation < rule.max_depth, spawned);
   if (!optics.spawns()) return;
   const Direction d = node.ray.direction;
-  const Interface interface(node, object);
+  const VertexTexels texels(node, object, {Slot::normal});
+  const Interface interface(node, object, texels);
   if (optics.reflects)
     spawner.add(Branch::reflection, mirrored(d, interface.normal(), node.point.geometric), 1.0F,
                 interface.factor(interface.reflectance()));
   if (optics.coat_reflects && !node.point.inside) {
-    const Normal coat = coat_normal(node, object);
+    const Normal coat = coat_normal(node, object, texels);
     spawner.add(Branch::coat, mirrored(d, coat, node.point.geometric), 1.0F,
                 coat_term(std::fmin(std::fmax(-d.dot(coat), kLeastCosine), 1.0F)));
   }
@@ -290,14 +299,15 @@ void spawn_path(const RayNode& node, const RayObject& object, const SpawnRule& r
   const CoverageChoice& coverage = node.coverage;
   if (optics.transparent && coverage.goes_on()) bent(add_straight_ray(spawner, node, object, is_deep));
   if (!coverage.sees_surface()) return;
-  const Interface interface(node, object);
+  const VertexTexels texels = texels_of_lobes(node, object);
+  const Interface interface(node, object, texels);
   if (!gathers && is_phong && optics.reflects) add_mirror_ray(spawner, node, interface.normal());
   // Where what goes through is blurred, a lobe stands for it, but for rays that only gather.
   const bool is_smooth = gathers || !object.blurs;
   if (is_smooth) interface.refract(spawner, false, refracted);
   if (is_smooth) interface.refract(spawner, true, refracted);
   if (gathers) return;
-  const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object));
+  const VertexLobes lobes = lobes_at(node, object, interface.normal(), coat_normal(node, object, texels), texels);
   if (!lobes.any()) return;
   add_lobe_ray(spawner, node, object, lobes, rule, optics.refracts ? interface.factor(interface.reflectance()) : 1.0F);
   spawned.lobes = lobes;
@@ -318,8 +328,8 @@ void go_straight(const RayNode& node, const RayObject& object, SpawnedRay& ray) 
 
 VertexLobes find_lobes(const RayNode& node, const RayObject& object) {
   if (node.ray.path.gathers || !node.coverage.sees_surface()) return {};
-  return lobes_at(node, object, normal_of_slot(node, object, Slot::normal, object.material->normal_scale),
-                  coat_normal(node, object));
+  const VertexTexels texels = texels_of_lobes(node, object);
+  return lobes_at(node, object, base_normal(node, object, texels), coat_normal(node, object, texels), texels);
 }
 
 void spawn(const RayNode& node, const RayObject& object, const SpawnRule& rule, Spawned& spawned) {
