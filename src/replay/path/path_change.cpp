@@ -1,6 +1,7 @@
 #include "replay/path/path_change.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "color/path/sum_places.h"
 #include "frame/light_sums.h"
@@ -24,6 +25,16 @@ std::shared_ptr<const Scene> before_edit(const Scene& scene, const SceneDelta& d
   return before;
 }
 
+/// Around all points of a light; empty where it has no place.
+Box box_of(const RayLight& light) {
+  if (!traits_of(light.kind).has_place || light.emission) return {};
+  const auto reach = [&](int axis) {
+    return light.radius + std::fabs(light.right[axis]) + std::fabs(light.up[axis]);  // more than its half extents
+  };
+  const Direction around(reach(0), reach(1), reach(2));
+  return {light.position - around, light.position + around};
+}
+
 /// Lights that stay where they were keep their places in trees; the others are new.
 void match_lights(const RayScene& before, const std::vector<LightId>& order_before, const RayScene& after,
                   RayChange& rays) {
@@ -34,6 +45,7 @@ void match_lights(const RayScene& before, const std::vector<LightId>& order_befo
     const bool stays = old < std::ssize(order_before) &&
                        before.light(static_cast<std::size_t>(old)).same_place(after.light(place));
     rays.old_light_index.push_back(stays ? static_cast<std::uint32_t>(old) : kNoNode);
+    rays.light_boxes.push_back(box_of(after.light(place)));
   }
   rays.find_lost_lights();
   rays.keeps_places = order_before == after.light_order();

@@ -87,6 +87,8 @@ struct RayChange {
   SelectionBounds bounds;                          // of these three, where they are not empty
   std::vector<LightId> old_lights;                 // light order of the stored trees
   std::vector<std::uint32_t> old_light_index;      // by place in the new light order; kNoNode: new or moved light
+  std::vector<Box> light_boxes;                    // by place in the new light order: around a light, empty: it may be
+                                                   // anywhere; none at all: nothing is known
   std::vector<std::uint32_t> lost_lights;          // places in the old light order to which no new one refers
   bool lights_changed = false;                     // any light added, deleted, moved or reordered
   bool keeps_places = false;                       // the light order is the stored one, whatever has moved

@@ -15,25 +15,29 @@ namespace relook {
 
 class ShadowUpdater {
  public:
-  /// All outlive it. `what`: is told what becomes another.
-  ShadowUpdater(Grower& grower, const RayChange& change, SegmentTests& tests, GrowCounters& counters, TreeChange& what)
+  /// All outlive it. `what`: is told what becomes another. `keeps_states`: nodes are where they were, and face the lights
+  /// that stay as they did.
+  ShadowUpdater(Grower& grower, const RayChange& change, SegmentTests& tests, GrowCounters& counters, TreeChange& what,
+                bool keeps_states)
       : grower_(grower),
         change_(change),
         tests_(tests),
         counters_(counters),
         what_(what),
+        keeps_states_(keeps_states),
         line_(grower.grow().shadow_bits),
         object_rays_(grower.grow().objects, counters) {}
 
   /// `hits`: of the node and its filters, as stored.
   void update(std::uint32_t index, const PathNode& node, std::span<const Hit> hits, const Touch& touch) {
-    const bool reads_entries = !only_lights_ || !node.entries.empty();
-    if (reads_entries) read_entries(node, hits);
+    has_entries_ = !node.entries.empty();
+    if (has_entries_) read_entries(node, hits);
+    if (keeps_states_) find_place(grower_.block().nodes[index].point);
     for (std::size_t light = 0; light < grower_.lights().size(); ++light) {
       const std::uint32_t old = change_.old_light_index[light];
       const ShadowState before = old == kNoNode ? ShadowState::facing_away : shadow_state(node.lights, old);
       const bool touched = touch.touches(before == ShadowState::blocked, light);
-      if (reads_entries || old == kNoNode)
+      if (!only_lights_ || has_entries_ || old == kNoNode)
         update_light({index, light, {}, before, old == kNoNode ? 0 : old, old == kNoNode}, touched);
       else
         keep_state(index, light, before, touched);
@@ -55,6 +59,30 @@ class ShadowUpdater {
       stored_entries_[old] = entries.next(state);
       if (state == ShadowState::filtered) filters.next(stored_entries_[old].objects, stored_filters_[old]);
     }
+  }
+
+  /// Of an old light.
+  [[nodiscard]] const LightEntry& entry_of(std::size_t old) const { return has_entries_ ? stored_entries_[old] : kNoEntry; }
+  [[nodiscard]] std::vector<FilterNode>& filters_of(std::size_t old) {
+    return has_entries_ ? stored_filters_[old] : no_filters_;
+  }
+
+  /// Where the node's segments set out.
+  void find_place(const SurfacePoint& point) {
+    const Direction margin = Direction(1, 1, 1) * (2 * point.offset);
+    place_ = Box(point.position - margin, point.position + margin);
+    place_.extendBy(point.position + point.lift);
+  }
+  /// Is a light so placed that no segment from the node to it comes near the selection? Told without a sample of it.
+  [[nodiscard]] bool is_away(std::size_t light, ShadowState state) const {
+    if (light >= change_.light_boxes.size() || change_.light_boxes[light].isEmpty()) return false;
+    Box hull = place_;
+    hull.extendBy(change_.light_boxes[light]);
+    const SelectionBounds& bounds = change_.bounds;
+    const Direction slack = (hull.max - hull.min) * (0x1p-12F * bounds.condition);
+    hull = Box(hull.min - slack, hull.max + slack);
+    return state == ShadowState::blocked ? !hull.intersects(bounds.shadows_before)
+                                         : !hull.intersects(bounds.shadows_after);
   }
 
   /// Of a light that stays where it is while only other lights change.
@@ -90,6 +118,13 @@ class ShadowUpdater {
       tests_.tests_shadow(l.before, touched, {});
       if (l.before == ShadowState::filtered) grower_.gathers(l.index, l.light, l.segment);
       return keep(l);
+    }
+    if (keeps_states_ && !l.is_new && grower_.grow().shadow_bits == 0) {
+      if (l.before == ShadowState::facing_away) return;
+      if (l.before != ShadowState::filtered && touched && is_away(l.light, l.before)) {
+        ++counters_.culled.boxes;
+        return keep(l);
+      }
     }
     if (!grower_.gathers(l.index, l.light, l.segment)) {
       if (l.before == ShadowState::facing_away) return;
@@ -166,7 +201,7 @@ class ShadowUpdater {
 
   /// What stands on the segment now, in line_; false if only a ray can tell.
   bool has_new_line(const LightUpdate& l) {
-    const LightEntry& stored = stored_entries_[l.old];
+    const LightEntry& stored = entry_of(l.old);
     find_steady(l);
     const std::span<const Crossing> steady = has_ranges(l) ? std::span<const Crossing>(ranged_) : steady_surfaces(l);
     if (steady.size() != steady_.size()) return false;
@@ -180,7 +215,7 @@ class ShadowUpdater {
   /// The transparent surfaces of a stored segment that are as they were, as objects.
   void find_steady(const LightUpdate& l) {
     steady_.clear();
-    std::ranges::copy_if(stored_entries_[l.old].objects, std::back_inserter(steady_), [&](std::uint32_t object) {
+    std::ranges::copy_if(entry_of(l.old).objects, std::back_inserter(steady_), [&](std::uint32_t object) {
       return (change_.flags(ObjectId(object)) & RayChange::shadows) == 0;
     });
   }
@@ -229,7 +264,7 @@ class ShadowUpdater {
     const std::span<const std::uint32_t> entry = line_.entry();
     if (l.before != ShadowState::blocked)
       note(TreeChange::all);
-    else if (!std::ranges::equal(entry, stored_entries_[l.old].words))
+    else if (!std::ranges::equal(entry, entry_of(l.old).words))
       note(TreeChange::counters);
     grower_.set_blocked(l.index, l.light, entry);
   }
@@ -241,13 +276,13 @@ class ShadowUpdater {
     if (link.state != l.before || l.before == ShadowState::filtered)
       note(TreeChange::all);
     else if (has_entry(l.before, grower_.grow().shadow_bits) &&
-             !std::ranges::equal(block.blocker_entry(link), stored_entries_[l.old].words))
+             !std::ranges::equal(block.blocker_entry(link), entry_of(l.old).words))
       note(TreeChange::counters);
   }
 
   /// No opaque blockers before or now: takes the selection's filters out and puts those it has now in.
   void update_filters(const LightUpdate& l, std::span<const Crossing> now) {
-    std::vector<FilterNode>& filters = stored_filters_[l.old];
+    std::vector<FilterNode>& filters = filters_of(l.old);
     if (l.before != ShadowState::filtered) filters.clear();
     const std::size_t removed = std::erase_if(
         filters, [&](const FilterNode& f) { return (change_.flags(f.object) & RayChange::shadows) != 0; });
@@ -279,9 +314,9 @@ class ShadowUpdater {
     if (!has_entry(l.before, grower_.grow().shadow_bits))
       grower_.set_link(l.index, l.light, l.before);
     else if (l.before == ShadowState::blocked)
-      grower_.set_blocked(l.index, l.light, stored_entries_[l.old].words);
+      grower_.set_blocked(l.index, l.light, entry_of(l.old).words);
     else
-      grower_.set_filters(l.index, l.light, l.segment, stored_filters_[l.old]);
+      grower_.set_filters(l.index, l.light, l.segment, filters_of(l.old));
   }
 
   Grower& grower_;
@@ -290,6 +325,11 @@ class ShadowUpdater {
   GrowCounters& counters_;
   TreeChange& what_;
   bool only_lights_ = change_.only_lights();
+  bool keeps_states_;  // no node's own doing changes
+  bool has_entries_ = false;
+  Box place_;
+  static inline const LightEntry kNoEntry{};
+  std::vector<FilterNode> no_filters_;
   std::vector<std::vector<FilterNode>> stored_filters_;  // by old light
   std::vector<LightEntry> stored_entries_;               // by old light
   std::vector<Crossing> crossings_before_, merged_, ranged_;

@@ -16,7 +16,7 @@ class Updater {
         stored_(stored),
         counters_(counters),
         tests_(change, grow.shadow_bits, counters),
-        shadows_(grower_, change, tests_, counters, what_) {}
+        shadows_(grower_, change, tests_, counters, what_, stored.kept != nullptr) {}
   Updater(const Updater&) = delete;
   Updater& operator=(const Updater&) = delete;
 
