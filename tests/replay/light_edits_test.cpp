@@ -183,6 +183,38 @@ std::vector<MatrixRow> emission_rows() {
   };
 }
 
+/// Terms are kept for the next edit of a colour: lights that come and go between such edits give sums other places.
+std::vector<MatrixRow> between_colors_rows() {
+  const auto ground = [](double red) {
+    return row("colour of the ground", set("/materials/Ground/pbrMetallicRoughness/baseColorFactor", {red, 0.5, 0.2, 1}));
+  };
+  return {
+      ground(0.1),
+      ground(0.9),
+      row("a lamp is gone", removed("/nodes/Lamp")),
+      ground(0.3),
+      row("three at once", set(shown("Window"), false), set(shown("Spot"), false), set(kGlow + "emissiveFactor", {0, 0, 0})),
+      ground(0.8),
+      row("a colour of another", set("/materials/Coated/pbrMetallicRoughness/baseColorFactor", {0.2, 0.2, 0.9, 1})),
+      ground(0.2),
+      row("the others", set(shown("Sun"), false), set(shown("Dish"), false)),
+      ground(0.7),
+      row("its light comes back", set(shown("Window"), true)),
+      ground(0.4),
+      row("with a colour", set(shown("Spot"), true),
+          set("/materials/Ground/pbrMetallicRoughness/baseColorFactor", {0.6, 0.6, 0.6, 1})),
+      ground(0.9),
+      row("a light moves", set("/nodes/Window/translation", {0.5, 1.4, 2.4})),
+      ground(0.5),
+      row("it moves on", set("/nodes/Window/translation", {0.2, 1.6, 2.2})),
+      row("an object moves", set("/nodes/Coated/translation", {0.6, 0.4, 1})),
+      ground(0.1),
+      row("it moves on, too", set("/nodes/Coated/translation", {0.5, 0.5, 0.8})),
+      ground(0.6),
+      row("a light moves once more", set("/nodes/Window/translation", {0.1, 1.8, 2.3})),
+  };
+}
+
 struct LightRows {
   const char* name;
   std::vector<MatrixRow> (*rows)();
@@ -202,7 +234,8 @@ INSTANTIATE_TEST_SUITE_P(Path, LightEdits,
                          testing::Values(LightRows{"gifts", gift_rows, 2}, LightRows{"shapes", shape_rows, 3},
                                          LightRows{"order", order_rows, 1}, LightRows{"order", order_rows, 4},
                                          LightRows{"sky", sky_rows, 1}, LightRows{"sky", sky_rows, 4},
-                                         LightRows{"emission", emission_rows, 2}),
+                                         LightRows{"emission", emission_rows, 2},
+                                         LightRows{"between_colours", between_colors_rows, 2}),
                          [](const testing::TestParamInfo<LightRows>& rows) {
                            return std::string(rows.param.name) + "_" + std::to_string(rows.param.samples);
                          });

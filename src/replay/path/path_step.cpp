@@ -131,8 +131,7 @@ class PathUpdate {
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     const bool relights = change_.any_taken() || change_.any_given() || change_.any_afresh();
     if (pass.ray_use == RayUse::colors && !relights) pass.term_parameters = term_parameters();
-    pass.keeps_terms = pass.term_parameters && parts_.color_trees.most_samples() > 0 &&
-                       parts_.color_trees.set_for(*pass.term_parameters) != nullptr;
+    pass.keeps_terms = pass.term_parameters && parts_.color_trees.most_samples() > 0;
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
     std::vector<NewSamples> fresh;

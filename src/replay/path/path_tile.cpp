@@ -64,9 +64,11 @@ class PathTileUpdater {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
     if (recorder_.has_news()) result_.rays = recorder_.take();
-    if (pass_.keeps_terms || result_.samples > 0) result_.terms = pass_.keeps_terms ? std::move(terms_) : TileTerms();
     const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
                               !std::ranges::is_sorted(pass_.change.old_of_new);
+    // Terms say by number into which sum they go: a light that is gone may leave no sample to be shaded, but others' places.
+    const bool is_other = result_.samples > 0 || is_reordered || pass_.change.step.rays.lights_changed;
+    if (pass_.keeps_terms || is_other) result_.terms = pass_.keeps_terms ? std::move(terms_) : TileTerms();
     if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
       result_.sums = sums;
       return std::move(result_);
