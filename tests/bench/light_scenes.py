@@ -132,6 +132,7 @@ def garden(folder):
     steps = light_steps("Key", key, ("/size", 0.6))
     steps += material_steps("Marble", [0.9, 0.4, 0.3, 1.0], (None, 0.3))
     steps += material_steps("Ground", [0.9, 0.4, 0.3, 1.0], (None, 0.3))
+    steps.append(("cow moved", [replace("/nodes/CowFar/translation", [3.0, 0.0, -4.4])]))
     write(folder, "garden", document, steps)
 
 

@@ -117,13 +117,23 @@ TEST_F(Interruption, a_run_is_left_and_taken_up_by_any_signal_within_steps_drags
   }
 }
 
+/// Has a signal been sent to a process that it has not been given yet? False if it has ended.
+bool has_pending_signal(pid_t process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("State:\tZ"))
+      return false;
+    else if (line.starts_with("ShdPnd:")) return line.find_first_not_of("0", line.find('\t') + 1) != std::string::npos;
+  return false;
+}
+
 TEST_F(Interruption, further_signals_change_nothing) {
   ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
   const pid_t child = start_relook(replay("run"));
   wait_for("run/frames/0002.exr");
   for (const int signal : {SIGUSR1, SIGTERM, SIGINT, SIGTERM, SIGUSR2, SIGHUP, SIGXCPU}) {
     kill(child, signal);
-    std::this_thread::sleep_for(2ms);
+    while (has_pending_signal(child)) std::this_thread::sleep_for(1ms);  // of several the least would be the first
   }
   EXPECT_EQ(end_of(child), 128 + SIGUSR1);
   EXPECT_EQ(report("run")["interrupted"], true);
