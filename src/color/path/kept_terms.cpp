@@ -18,8 +18,8 @@ struct KeptColumns {
 
 /// Calls done(run, first lane, lanes) for the lanes of a batch.
 template <class Done>
-void run_residual(const PathSplit& program, const StoredColumns& columns, std::size_t count, const Parameters& parameters,
-                  Scratch& scratch, const Done& done) {
+void run_residual(const PathSplit& program, const StoredColumns& columns, std::size_t count,
+                  const Parameters& parameters, Scratch& scratch, const Done& done) {
   const KeptColumns source{columns};
   KernelRun<KeptColumns> run(program.residual, parameters, source, count, scratch);
   for (std::size_t first = 0; first < count; first += kLanes) {
@@ -30,9 +30,7 @@ void run_residual(const PathSplit& program, const StoredColumns& columns, std::s
 }
 
 /// As PathShader has it: what does not come to the eye at all is none.
-Color term(const Color& weight, const Color& unit) {
-  return weight == Color(0, 0, 0) ? Color(0, 0, 0) : weight * unit;
-}
+Color term(const Color& weight, const Color& unit) { return weight == Color(0, 0, 0) ? Color(0, 0, 0) : weight * unit; }
 
 bool is_same(const Color& a, const Color& b) { return std::memcmp(&a, &b, sizeof(Color)) == 0; }
 
@@ -128,7 +126,8 @@ std::size_t TileTerms::bytes() const {
   return sum;
 }
 
-void exchange_terms(const KeptTerms& kept, const Scene& before, const Scene& after, TermMemory& memory, TileSums& sums) {
+void exchange_terms(const KeptTerms& kept, const Scene& before, const Scene& after, TermMemory& memory,
+                    TileSums& sums) {
   Exchange(kept, before, after, memory, sums).run();
 }
 

@@ -76,7 +76,8 @@ std::shared_ptr<const PathSplit> split(const PathProgram& program, FieldMask fie
   const Code& code = program.code;
   std::vector<bool> changing(code.size());
   for (Value v = 0; v < code.size(); ++v)
-    changing[v] = reads_fields(code[v], fields) || any_operand(code[v], [&](Value operand) { return changing[operand]; });
+    changing[v] =
+        reads_fields(code[v], fields) || any_operand(code[v], [&](Value operand) { return changing[operand]; });
   const std::vector<Value> columns = find_columns(code, find_uniform(code), changing, program.outputs);
   return std::make_shared<const PathSplit>(
       PathSplit{make_kernel(code, columns), make_kernel(with_columns(code, columns), program.outputs)});

@@ -119,7 +119,8 @@ struct PathShader::Impl {
       runner.add(i, runner.number_of(runner.key_of(PathPiece::filter, filter.object, filter.point.inside)));
     }
     runner.run(*block, true, {}, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
-      for (std::size_t lane = 0; lane < chosen.size(); ++lane) tints[runner.item(chosen[lane])] = from_lanes(kernel, 0, lane);
+      for (std::size_t lane = 0; lane < chosen.size(); ++lane)
+        tints[runner.item(chosen[lane])] = from_lanes(kernel, 0, lane);
     });
   }
 
@@ -195,7 +196,8 @@ struct PathShader::Impl {
   void keep_lit_columns(const KernelRun<PathBatch>& kernel, std::size_t first, std::span<const std::uint32_t> chosen) {
     const std::size_t count = kernel.outputs() - first, start = lit_columns.size();
     lit_columns.resize(start + count * chosen.size());
-    for (std::size_t lane = 0; lane < chosen.size(); ++lane) first_lit_column[runner.item(chosen[lane])] = start + lane * count;
+    for (std::size_t lane = 0; lane < chosen.size(); ++lane)
+      first_lit_column[runner.item(chosen[lane])] = start + lane * count;
     for (std::size_t k = 0; k < count; ++k) {
       const float* from = kernel.output(first + k);
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) lit_columns[start + lane * count + k] = from[lane];

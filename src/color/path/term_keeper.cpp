@@ -58,8 +58,8 @@ void TermKeeper::keep_columns(PathRunner& runner) {
           for (std::size_t b = 0; b < kBranches; ++b)
             if (branches.has(static_cast<Branch>(b))) hits.children.push_back(slot_[block_.nodes[i].child[b]]);
         }
-        hits.columns = stored_columns(hits.program->constants, runner.parameters(number), batch, places.size(),
-                                      runner.scratch());
+        hits.columns =
+            stored_columns(hits.program->constants, runner.parameters(number), batch, places.size(), runner.scratch());
         kept_.hits.push_back(std::move(hits));
       });
 }
@@ -76,7 +76,8 @@ void TermKeeper::add_lit(std::uint32_t number, const PathBatch& batch, std::span
       for (std::uint32_t f = 0; f < link->filters; ++f) lit.tints.push_back(tints[link->first + f]);
     lit.first_tint.push_back(static_cast<std::uint32_t>(lit.tints.size()));
   }
-  lit.columns = stored_columns(lit.program->constants, runner.parameters(number), batch, places.size(), runner.scratch());
+  lit.columns =
+      stored_columns(lit.program->constants, runner.parameters(number), batch, places.size(), runner.scratch());
   kept_.lit_hits.push_back(std::move(lit));
 }
 

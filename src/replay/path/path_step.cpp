@@ -125,9 +125,22 @@ class PathUpdate {
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
     Pool<PathShader> shaders_before, shaders_after;
-    PathPass pass{change_,        stored_.image(), programs_before, programs_after, grow_before, grow_after,
-                  shaders_before, shaders_after,   {},              {},             {},          {},
-                  false,          RayUse::none,    {},              false};
+    PathPass pass{change_,
+                  stored_.image(),
+                  programs_before,
+                  programs_after,
+                  grow_before,
+                  grow_after,
+                  shaders_before,
+                  shaders_after,
+                  {},
+                  {},
+                  {},
+                  {},
+                  false,
+                  RayUse::none,
+                  {},
+                  false};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     const bool relights = change_.any_taken() || change_.any_given() || change_.any_afresh();
     if (pass.ray_use == RayUse::colors && !relights) pass.term_parameters = term_parameters();

@@ -64,9 +64,10 @@ class PathTileUpdater {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
     if (recorder_.has_news()) result_.rays = recorder_.take();
-    const bool is_reordered = pass_.before.places().count != pass_.after.places().count ||
-                              !std::ranges::is_sorted(pass_.change.old_of_new);
-    // Terms say by number into which sum they go: a light that is gone may leave no sample to be shaded, but others' places.
+    const bool is_reordered =
+        pass_.before.places().count != pass_.after.places().count || !std::ranges::is_sorted(pass_.change.old_of_new);
+    // Terms say by number into which sum they go: a light that is gone may leave no sample to be shaded, but others'
+    // places.
     const bool is_other = result_.samples > 0 || is_reordered || pass_.change.step.rays.lights_changed;
     if (pass_.keeps_terms || is_other) result_.terms = pass_.keeps_terms ? std::move(terms_) : TileTerms();
     if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
@@ -120,7 +121,8 @@ class PathTileUpdater {
                       trees_.hits_of(sample)};
     const bool is_named = !pass_.named_path.empty() && pass_.named_path[path.index()] != 0;
     if (use_ == RayUse::lights && is_dark(stored.cursor)) return;
-    if (use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named) stored.kept = rays_.rays.data() + rays_.first[sample];
+    const bool is_along_kept = use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named;
+    if (is_along_kept) stored.kept = rays_.rays.data() + rays_.first[sample];
     if (use_ == RayUse::tests && stored.kept != nullptr) {
       if (stays(primary, sample, stored)) return;
       stored.kept = nullptr;
@@ -221,7 +223,8 @@ class PathTileUpdater {
     packed.first_hit.push_back(hit_place(packed.hits.size()));
   }
   [[nodiscard]] bool is_as_stored(std::uint32_t sample, std::span<const Hit> hits) const {
-    return pass_.change.step.rays.keeps_places && has_hits(trees_) && std::ranges::equal(hits, trees_.hits_of(sample)) &&
+    return pass_.change.step.rays.keeps_places && has_hits(trees_) &&
+           std::ranges::equal(hits, trees_.hits_of(sample)) &&
            std::ranges::equal(words_, pass_.image.paths.words(trees_.paths[sample]));
   }
 
@@ -269,12 +272,12 @@ class PathTileUpdater {
   Pool<PathShader>::Loan shader_before_, shader_after_;
   TileSums old_terms_, new_terms_;
   std::vector<std::uint8_t> no_sums_;
-  bool adds_, takes_;  // terms of some lights, beside those of samples whose terms all change
-  bool is_shared_;         // trees as they were are those as they are
-  bool takes_or_shades_;   // terms are taken out
-  bool misses_are_dark_;
-  Batch old_;      // trees as they were, of samples whose terms change, or of which some lights' are taken out
-  Batch changed_;  // the same as they are now, and those of which only some lights are worked out afresh
+  bool adds_, takes_;     // terms of some lights, beside those of samples whose terms all change
+  bool is_shared_;        // trees as they were are those as they are
+  bool takes_or_shades_;  // terms are taken out
+  bool misses_are_dark_;  // rays from the eye that meet nothing bring nothing of the lights that are looked at
+  Batch old_;             // trees as they were, of samples whose terms change, or of which some lights' are taken out
+  Batch changed_;         // the same as they are now, and those of which only some lights are worked out afresh
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
   std::vector<std::uint32_t> words_;
   TileTerms terms_;
