@@ -185,7 +185,7 @@ class PathUpdate {
   /// were, shaded, grown anew and shaded again, about twice the work of tracing them; the others are tested.
   [[nodiscard]] bool is_sooner_traced(const PathPass& pass, std::size_t tile) const {
     if (pass.grow_after.level == nullptr || pass.ray_use == RayUse::lights) return false;
-    const double kUpdated = 1.9, kTested = stored_.kept_rays(tile).empty() ? 0.4 : 0.2;  // over the time to trace
+    const double kUpdated = 2.2, kTested = stored_.kept_rays(tile).empty() ? 0.6 : 0.4;  // over the time to trace
     const Image& image = stored_.image();
     double all = 0, updated = 0;
     for (const PathId path : image.trees[tile].paths) {
