@@ -70,8 +70,7 @@ struct PathShader::Impl {
   }
 
   [[nodiscard]] bool is_lit_by(std::uint32_t place, const RayNode& node) const {
-    const ShadowState state = block->lights[node.first_light + place].state;
-    return (state == ShadowState::open || state == ShadowState::filtered) && is_light_wanted(place, node);
+    return reaches(block->lights[node.first_light + place].state) && is_light_wanted(place, node);
   }
   [[nodiscard]] bool is_lit(const RayNode& node) const {
     for (std::uint32_t place = 0; place < places.of_light.size(); ++place)

@@ -128,7 +128,7 @@ bool PathChange::any_taken() const { return any_of(taken); }
 bool PathChange::any_given() const { return any_of(given); }
 
 bool PathChange::touches_samples() const {
-  return step.touches_rays() || any_afresh() || any_taken() || any_given() || !shaded.empty() || !step.colors.reassigned.empty();
+  return step.touches_rays() || relights() || !shaded.empty() || !step.colors.reassigned.empty();
 }
 
 PathChange find_path_change(const RayScene& rays_before, const std::vector<LightId>& lights_before,

@@ -29,6 +29,8 @@ struct PathChange {
   [[nodiscard]] bool any_afresh() const;
   [[nodiscard]] bool any_taken() const;
   [[nodiscard]] bool any_given() const;
+  /// Do terms of some lights change, whatever else does?
+  [[nodiscard]] bool relights() const { return any_afresh() || any_taken() || any_given(); }
   /// Must trees be looked at at all?
   [[nodiscard]] bool touches_samples() const;
 };

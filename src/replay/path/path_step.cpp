@@ -1,7 +1,6 @@
 #include "replay/path/path_step.h"
 
 #include <algorithm>
-#include <atomic>
 
 #include "base/parallel.h"
 #include "edit/apply.h"
@@ -19,7 +18,7 @@ bool sees_any(std::span<const std::uint32_t> words, const PathLayout& layout, st
     if (node.is_miss()) continue;
     for (const std::uint32_t place : places) {
       const ShadowState state = shadow_state(node.lights, place);
-      if (state == ShadowState::open || state == ShadowState::filtered) return true;
+      if (reaches(state)) return true;
     }
   }
   return false;
@@ -52,11 +51,10 @@ class PathSelection {
 
  private:
   [[nodiscard]] RayUse ray_use() const {
-    const bool relights = change_.any_taken() || change_.any_given() || change_.any_afresh();
     const StepChange& step = change_.step;
-    if (step.touches_rays() && !step.rays.lights_changed) return relights ? RayUse::none : RayUse::tests;
-    const bool only_lights = relights && step.rays.only_lights() && !change_.any_taken() && !gives_emission() &&
-                             change_.shaded.empty() && step.colors.reassigned.empty();
+    if (step.touches_rays() && !step.rays.lights_changed) return change_.relights() ? RayUse::none : RayUse::tests;
+    const bool only_lights = change_.relights() && step.rays.only_lights() && !change_.any_taken() &&
+                             !gives_emission() && change_.shaded.empty() && step.colors.reassigned.empty();
     if (only_lights) return RayUse::lights;
     return step.touches_rays() ? RayUse::none : RayUse::colors;
   }
@@ -125,26 +123,11 @@ class PathUpdate {
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
     Pool<PathShader> shaders_before, shaders_after;
-    PathPass pass{change_,
-                  stored_.image(),
-                  programs_before,
-                  programs_after,
-                  grow_before,
-                  grow_after,
-                  shaders_before,
-                  shaders_after,
-                  {},
-                  {},
-                  {},
-                  {},
-                  false,
-                  RayUse::none,
-                  {},
-                  false};
+    Pool<TermMemory> term_memory;
+    PathPass pass{change_,    stored_.image(), programs_before, programs_after, grow_before,
+                  grow_after, shaders_before,  shaders_after,   term_memory};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
-    const bool relights = change_.any_taken() || change_.any_given() || change_.any_afresh();
-    if (pass.ray_use == RayUse::colors && !relights) pass.term_parameters = term_parameters();
-    pass.keeps_terms = pass.term_parameters && parts_.color_trees.most_samples() > 0;
+    if (pass.ray_use == RayUse::colors && !change_.relights()) pass.term_parameters = term_parameters();
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
     std::vector<NewSamples> fresh;
@@ -184,7 +167,7 @@ class PathUpdate {
   /// Is a tile traced as a whole in less time than its trees are updated? Trees of changed objects are expanded as they
   /// were, shaded, grown anew and shaded again, about twice the work of tracing them; the others are tested.
   [[nodiscard]] bool is_sooner_traced(const PathPass& pass, std::size_t tile) const {
-    if (pass.grow_after.level == nullptr || pass.ray_use == RayUse::lights) return false;
+    if (pass.grow_after.level == nullptr || change_.step.rays.only_lights()) return false;
     const double kUpdated = 2.2, kTested = stored_.kept_rays(tile).empty() ? 0.6 : 0.4;  // over the time to trace
     const Image& image = stored_.image();
     double all = 0, updated = 0;
@@ -196,10 +179,6 @@ class PathUpdate {
     return updated * kUpdated + (all - updated) * kTested > all;
   }
 
-  /// Terms are kept of no more samples than colour trees may be (m_c in the paper, 4.1).
-  [[nodiscard]] bool takes_room(std::uint64_t samples) {
-    return kept_samples_.fetch_add(samples) + samples <= parts_.color_trees.most_samples();
-  }
   [[nodiscard]] static bool may_recolor(const PathPass& pass, const TileTerms& terms) {
     return pass.term_parameters && !terms.empty() && terms.parameters.contains(*pass.term_parameters);
   }
@@ -218,7 +197,6 @@ class PathUpdate {
       else
         result = trace_path_tile(pass, tile);
     }
-    if (result.terms && !takes_room(result.terms->samples)) result.terms = TileTerms();
     if (result.terms) stored_.keep_terms(tile, std::move(*result.terms));
     if (result.has_other_weights) stored_.forget_weights(tile);
     result.terms.reset();
@@ -232,7 +210,6 @@ class PathUpdate {
   ReplayParts& parts_;
   StoredImage& stored_;
   PathChange& change_;
-  std::atomic<std::uint64_t> kept_samples_ = 0;  // whose terms are kept in this step
 };
 
 /// `tiles`: by tile, whether its pixels may be others.

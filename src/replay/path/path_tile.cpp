@@ -34,6 +34,10 @@ Pool<PathShader>::Loan shader_of(const TilePrograms& programs, Pool<PathShader>&
       [&] { return std::make_unique<PathShader>(programs.scene(), programs.path(), programs.places()); });
 }
 
+Pool<TermMemory>::Loan term_memory_of(const PathPass& pass) {
+  return pass.term_memory.take([] { return std::make_unique<TermMemory>(); });
+}
+
 class PathTileUpdater {
  public:
   /// `rays`: as kept; empty: nothing. `records_all`: every sample will be grown.
@@ -57,7 +61,7 @@ class PathTileUpdater {
         takes_or_shades_(takes_ || !pass.change.shaded.empty() || !pass.change.step.colors.reassigned.empty()),
         misses_are_dark_(are_misses_dark()) {
     result_.fresh.tile = tile;
-    if (pass.keeps_terms) terms_.parameters = *pass.term_parameters;
+    if (pass.term_parameters) terms_.parameters = *pass.term_parameters;
   }
 
   PathTileResult update(const PackedSums& sums) {
@@ -69,7 +73,7 @@ class PathTileUpdater {
     // Terms say by number into which sum they go: a light that is gone may leave no sample to be shaded, but others'
     // places.
     const bool is_other = result_.samples > 0 || is_reordered || pass_.change.step.rays.lights_changed;
-    if (pass_.keeps_terms || is_other) result_.terms = pass_.keeps_terms ? std::move(terms_) : TileTerms();
+    if (pass_.term_parameters || is_other) result_.terms = std::move(terms_);
     if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
       result_.sums = sums;
       return std::move(result_);
@@ -119,7 +123,7 @@ class PathTileUpdater {
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     StoredTree stored{PathCursor(pass_.image.paths.words(path), {pass_.change.step.rays.old_lights.size(), 0}),
                       trees_.hits_of(sample)};
-    const bool is_named = !pass_.named_path.empty() && pass_.named_path[path.index()] != 0;
+    const bool is_named = pass_.named_path[path.index()] != 0;
     if (use_ == RayUse::lights && is_dark(stored.cursor)) return;
     const bool is_along_kept = use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named;
     if (is_along_kept) stored.kept = rays_.rays.data() + rays_.first[sample];
@@ -248,12 +252,13 @@ class PathTileUpdater {
   /// What does not change of terms is worked out once for both, and kept.
   void exchange() {
     if (changed_.roots.empty()) return;
+    const auto memory = term_memory_of(pass_);
     KeptTerms kept;
     shader_after_->keep(changed_.block, samples_, *pass_.term_parameters, kept);
-    exchange_terms(kept, pass_.before.scene().scene(), pass_.after.scene().scene(), term_memory_, new_terms_);
+    exchange_terms(kept, pass_.before.scene().scene(), pass_.after.scene().scene(), *memory, new_terms_);
     note_weights(changed_, *shader_after_);
     terms_.samples += changed_.roots.size();
-    if (pass_.keeps_terms) terms_.blocks.push_back(std::move(kept));
+    terms_.blocks.push_back(std::move(kept));
     changed_.clear();
   }
   void note_weights(const Batch& batch, const PathShader& shader) {
@@ -281,7 +286,6 @@ class PathTileUpdater {
   std::vector<std::uint8_t> whole_ = std::vector<std::uint8_t>(trees_.paths.size(), 0);  // by sample: of the first kind
   std::vector<std::uint32_t> words_;
   TileTerms terms_;
-  TermMemory term_memory_;
   PathTileResult result_;
 };
 
@@ -299,9 +303,9 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
   result.samples = terms.samples;
   if (terms.samples == 0) return result;
   TileSums all = sums.unpack();
-  TermMemory memory;
+  const auto memory = term_memory_of(pass);
   for (const KeptTerms& block : terms.blocks)
-    exchange_terms(block, pass.before.scene().scene(), pass.after.scene().scene(), memory, all);
+    exchange_terms(block, pass.before.scene().scene(), pass.after.scene().scene(), *memory, all);
   result.sums = PackedSums::pack(all);
   result.has_changed = result.has_other_weights = true;
   return result;

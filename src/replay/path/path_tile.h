@@ -1,6 +1,6 @@
 // One tile after an edit, under the path integrator: ray trees brought up to date, terms of light that no longer hold
-// taken out of its sums, new ones added: base minus old plus new is the full render's, bit for bit. Tiles can be done at
-// the same time.
+// taken out of its sums, new ones added: base minus old plus new is the full render's, bit for bit. Tiles can be done
+// at the same time.
 #pragma once
 #include <optional>
 
@@ -16,37 +16,38 @@ namespace relook {
 /// What kept rays are good for in a step.
 enum class RayUse : std::uint8_t {
   none,
-  tests,  // stored segments are tested along them; trees that change are grown without
+  tests,   // stored segments are tested along them; trees that change are grown without
   colors,  // no tree changes
-  lights  // with their weights: only lights change, of which each has its own terms
+  lights   // with their weights: only lights change, of which each has its own terms
 };
 
 /// What all tiles of a step have in common.
 struct PathPass {
   const PathChange& change;
   const Image& image;
-  const TilePrograms& before;            // of the scene before the edit
-  const TilePrograms& after;             // and after it
+  const TilePrograms& before;  // of the scene before the edit
+  const TilePrograms& after;   // and after it
   const GrowScene& grow_before;
   const GrowScene& grow_after;
   Pool<PathShader>& shaders_before;  // of the programs above
   Pool<PathShader>& shaders_after;
-  std::vector<std::uint8_t> update_path;  // by path: its trees may change, or must be packed anew
-  std::vector<std::uint8_t> shade_path;   // by path: its terms change though its tree does not
-  std::vector<std::uint8_t> relight_path;  // by path: lights that are taken or given may reach it; empty: they may all
-  std::vector<std::uint8_t> named_path;    // by path: it names an object with a flag; empty: none does
+  Pool<TermMemory>& term_memory;
+  std::vector<std::uint8_t> update_path{};  // by path: its trees may change, or must be packed anew
+  std::vector<std::uint8_t> shade_path{};   // by path: its terms change though its tree does not
+  std::vector<std::uint8_t>
+      relight_path{};                      // by path: lights that are taken or given may reach it; empty: they may all
+  std::vector<std::uint8_t> named_path{};  // by path: it names an object with a flag
   bool updates_all = false;                // every path is in update_path
   RayUse ray_use = RayUse::none;
-  std::optional<ParameterSet> term_parameters;  // those of an edit for which terms may be kept
-  bool keeps_terms = false;                     // they are to be kept now
+  std::optional<ParameterSet> term_parameters{};  // those of an edit for whose like terms are kept
 };
 
 struct PathTileResult {
-  NewSamples fresh;              // trees alone
-  std::optional<TileRays> rays;  // to be kept from now on; none: as before
+  NewSamples fresh;                // trees alone
+  std::optional<TileRays> rays;    // to be kept from now on; none: as before
   std::optional<TileTerms> terms;  // likewise
   bool has_other_weights = false;  // than those that are kept with rays
-  PackedSums sums;   // of the tile as it is now
+  PackedSums sums;                 // of the tile as it is now
   bool has_changed = false;
   std::uint64_t samples = 0;  // whose terms have been worked out
   GrowCounters counters;
