@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "base/system/large_pages.h"
 #include "scene/texture/texture.h"
 
 namespace relook {
@@ -130,7 +129,6 @@ TexturePyramid build_pyramid(TexelFormat format, std::uint32_t width, std::uint3
     pyramid.texels8[texel * kChannels + c] = (c == 3 ? alpha : color).byte(value);
   };
   const auto [low, high] = extremes(pyramid.texels8, std::uint64_t{width} * height);
-  prefer_large_pages(pyramid.texels8);
   pyramid.smallest = Rgba(color.linear(low[0]), color.linear(low[1]), color.linear(low[2]), alpha.linear(low[3]));
   pyramid.largest = Rgba(color.linear(high[0]), color.linear(high[1]), color.linear(high[2]), alpha.linear(high[3]));
   fill_levels(pyramid, load, store);
@@ -147,7 +145,6 @@ TexturePyramid build_pyramid(std::uint32_t width, std::uint32_t height, std::vec
     pyramid.texels32[texel * kChannels + c] = value;
   };
   const auto [low, high] = extremes(pyramid.texels32, std::uint64_t{width} * height);
-  prefer_large_pages(pyramid.texels32);
   pyramid.smallest = Rgba(low[0], low[1], low[2], low[3]);
   pyramid.largest = Rgba(high[0], high[1], high[2], high[3]);
   fill_levels(pyramid, load, store);
