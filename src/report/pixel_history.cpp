@@ -55,11 +55,11 @@ struct Comparison {
     for (const SceneDelta::MaterialChange& change : delta.materials) add_material(change.id, casters, causes);
     for (const SceneDelta::ObjectChange& change : delta.objects) {
       const std::string name = "node " + object_name(scene.object(change.id)) + ": ";
+      const std::string* how = nullptr;
       for (const auto* names : {&before.hits, &after.hits, &before.filters, &after.filters, &casters})
-        if (const std::string* how = find(*names, change.id)) {
-          causes.push_back(name + *how);
-          break;
-        }
+        if (how == nullptr) how = find(*names, change.id);
+      if (how != nullptr) causes.push_back(name + *how);
+      if (how == nullptr) add_emission_of(change, name, causes);
     }
     for (const SceneDelta::LightChange& change : delta.lights) add_light(change, causes);
     if (delta.ambient_before && !(before.hits.empty() && after.hits.empty()))
@@ -81,10 +81,26 @@ struct Comparison {
       return;
     }
   }
+  /// Of an object that emits: what moves is its share in the light of its material.
+  void add_emission_of(const SceneDelta::ObjectChange& change, const std::string& name,
+                       std::vector<std::string>& causes) const {
+    const MaterialId now = scene.object(change.id).material;
+    for (const PixelFacts* facts : {&before, &after})
+      for (const auto& [id, route] : facts->lights) {
+        const Light& light = scene.light(id);
+        if (light.kind != LightKind::emission || (light.material != now && light.material != change.before.material))
+          continue;
+        causes.push_back(name + "light " + light_name(light) + " on " + route);
+        return;
+      }
+  }
   /// What no sample brings: a light that rays have crossed, or do now.
   void add_met_lights(const SceneDelta& delta, std::vector<std::string>& causes) const {
     for (const SceneDelta::LightChange& change : delta.lights)
       causes.push_back(changed_name(change, scene.light(change.id)) + ": met by rays");
+    if (!causes.empty()) return;
+    for (const SceneDelta::ObjectChange& change : delta.objects)
+      causes.push_back("node " + object_name(scene.object(change.id)) + ": its light, met by rays");
   }
 
   void add_material(MaterialId id, const std::map<ObjectId, std::string>& casters,

@@ -139,7 +139,7 @@ TEST_P(PathLayers, have_the_variance_that_halves_of_the_samples_tell) {
     RenderStats stats;
     return render_with_sums(state.scene(), view, stats);
   };
-  const Image image = render_of(16), first_half = render_of(8), converged = render_of(1024);
+  const Image image = render_of(16), first_half = render_of(8), converged = render_of(256);
   const LayerFile file = layers(state.scene(), image, PixelFormat::float32);
   double told = 0, found = 0;
   for (std::size_t i = 0; i < image.frame.pixels.size(); ++i) {
