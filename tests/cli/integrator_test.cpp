@@ -140,7 +140,8 @@ TEST_F(IntegratorCli, a_cache_or_run_of_the_other_one_is_in_the_way) {
                "--integrator (path)");
   expect_error(preprocess_path("c", {"--glossy-depth", "1"}), 1, "--glossy-depth (4)");
   ASSERT_EQ(replay("c", "r").exit_code, 0);
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("w"), "--resolution", "24x16", "--integrator", "whitted", "--quiet"})
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("w"), "--resolution", "24x16", "--integrator", "whitted", "--samples",
+                    "64", "--quiet"})
                 .exit_code,
             0);
   expect_error(replay("w", "r"), 1, "frames of --integrator path, not whitted");

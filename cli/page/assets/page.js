@@ -50,6 +50,11 @@ const page = {
     return `${unit === 0 ? value : value.toPrecision(3)} ${units[unit]}`;
   },
 
+  /** How far pixels of the first frame are off, as a share of its light: a number, where it is known. */
+  noise(report) {
+    return report.noise === null || report.noise === undefined ? [] : [`noise ${(100 * report.noise).toPrecision(2)} %`];
+  },
+
   /** "light" or "dark"; as the system has it until it is chosen. */
   scheme() {
     return document.documentElement.dataset.scheme;

@@ -106,7 +106,7 @@ class RunReport {
     page.byId("title").textContent = name(report.journal.file);
     document.title = `relook: ${name(report.journal.file)}`;
     const facts = [`scene ${name(report.scene.file)}`, `camera ${report.camera}`, report.resolution.join(" x "),
-      `${report.options.integrator}, ${report.samples} samples a pixel`, `${page.count(report.entries)} frames`];
+      `${report.options.integrator}, ${report.samples} samples a pixel`, ...page.noise(report), `${page.count(report.entries)} frames`];
     if (report.verified.frames > 0)
       facts.push(`verified: ${page.count(report.verified.pixels_different)} pixels differ from full renders`);
     page.byId("facts").textContent = facts.join(", ");

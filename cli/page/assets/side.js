@@ -47,6 +47,7 @@ function runParts(report) {
   const rows = [["scene", report.scene.file], ["scene hash", report.scene.hash], ["journal", report.journal.file],
     ["journal hash", report.journal.hash], ["program", `relook ${report.program}`], ["camera", report.camera],
     ["resolution", report.resolution.join(" x ")], ["samples a pixel", report.samples],
+    ...page.noise(report).map((text) => ["noise before any step", text.replace("noise ", "")]),
     ["machine", `${report.machine.threads} threads, ${report.machine.cpu}`],
     ["full render", report.full_render_seconds ? page.seconds(report.full_render_seconds) : "not measured"]];
   for (const [name, value] of Object.entries(report.options)) rows.push([`option ${name}`, JSON.stringify(value)]);
