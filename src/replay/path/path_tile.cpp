@@ -51,7 +51,10 @@ SegmentRecorder::Mode record_mode(const PathPass& pass, const KeptOfTile& kept) 
   return kept.segments.empty() ? SegmentRecorder::Mode::none : SegmentRecorder::Mode::changes;
 }
 
-/// A sample whose segments the selection does not touch.
+bool is_left_alone(const PathPass& pass, std::span<const std::uint8_t> touched, std::uint32_t sample, PathId path) {
+  return !touched.empty() && touched[sample] == 0 && pass.named_path[path.index()] == 0 &&
+         pass.shade_path[path.index()] == 0;
+}
 void count_left_alone(const PathPass& pass, const TileSegments& segments, std::uint32_t sample,
                       CulledSegments& culled) {
   for (std::size_t kind = 0; kind < kSegmentKinds; ++kind) {
@@ -145,12 +148,12 @@ class PathTileUpdater {
  private:
   void update_sample(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
+    if (is_left_alone(pass_, kept_.touched, sample, path))
+      return count_left_alone(pass_, kept_.segments, sample, result_.counters.culled);
     const bool updates = pass_.update_path[path.index()] != 0, shades = pass_.shade_path[path.index()] != 0;
     const bool relights = (adds_ || takes_) && (pass_.relight_path.empty() || pass_.relight_path[path.index()] != 0);
     if (!updates && !shades && !relights) return;
     const bool is_named = pass_.named_path[path.index()] != 0;
-    if (!kept_.touched.empty() && kept_.touched[sample] == 0 && !is_named && !shades)
-      return count_left_alone(pass_, kept_.segments, sample, result_.counters.culled);
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     StoredTree stored{PathCursor(pass_.image.paths.words(path), {pass_.change.step.rays.old_lights.size(), 0}),
                       trees_.hits_of(sample)};
@@ -345,8 +348,7 @@ std::optional<PathTileResult> leave_path_tile(const PathPass& pass, std::size_t 
   result.fresh.tile = tile;
   const std::vector<PathId>& paths = pass.image.trees[tile].paths;
   for (std::uint32_t sample = 0; sample < paths.size(); ++sample) {
-    const std::size_t path = paths[sample].index();
-    if (touched[sample] != 0 || pass.named_path[path] != 0 || pass.shade_path[path] != 0) return std::nullopt;
+    if (!is_left_alone(pass, touched, sample, paths[sample])) return std::nullopt;
     count_left_alone(pass, segments, sample, result.counters.culled);
   }
   return result;

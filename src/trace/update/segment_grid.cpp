@@ -61,12 +61,20 @@ SegmentGrid::SegmentGrid(const Box& scene, const Box& selection) {
 GridEnds SegmentGrid::ends_of(const Ray& ray) const {
   std::array<double, 6> at;
   find_steps(ray, ray.t_min, ray.t_max, at);
-  // Most segments are in the grid as a whole; what is without an end is not, nor what is not a number.
-  const auto is_outside = [](double step) { return !(step >= kFree && step <= kLast - kFree); };
-  if (std::ranges::any_of(at, is_outside)) {
+  // Most segments are in the grid as a whole, or leave it. What is without an end, or not a number, is not inside.
+  const auto is_inside = [](double step) { return step >= kFree && step <= kLast - kFree; };
+  if (!(is_inside(at[0]) && is_inside(at[1]) && is_inside(at[2]))) {
     double enter = ray.t_min, leave = ray.t_max;
     if (!cut(ray, low_, high_, enter, leave)) return kNowhere;
     find_steps(ray, enter, leave, at);
+  } else if (!(is_inside(at[3]) && is_inside(at[4]) && is_inside(at[5]))) {
+    double leave = ray.t_max;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      const double slope = ray.direction[axis];
+      if (slope != 0) leave = std::min(leave, ((slope > 0 ? high_[k] : low_[k]) - ray.origin[axis]) / slope);
+    }
+    find_steps(ray, ray.t_min, leave, at);
   }
   GridEnds ends;
   for (std::size_t k = 0; k < ends.size(); ++k)
