@@ -26,13 +26,23 @@ TileTrees with_hits_of(const SampleTrees& fresh, TileTrees trees) {
   next.first_hit.reserve(trees.first_hit.size());
   next.first_hit.push_back(0);
   next.hits.reserve(trees.hits.size());
-  std::size_t k = 0;
-  for (std::uint32_t sample = 0; sample < trees.paths.size(); ++sample) {
-    const bool is_new = k < fresh.samples.size() && fresh.samples[k] == sample;
-    const std::span<const Hit> hits = is_new ? fresh.hits_at(k++) : trees.hits_of(sample);
+  const auto keep = [&](std::size_t from, std::size_t to) {
+    if (from == to) return;  // there may be none at all
+    const std::uint32_t begin = trees.first_hit[from];
+    const std::size_t here = next.hits.size();
+    next.hits.insert(next.hits.end(), trees.hits.begin() + begin, trees.hits.begin() + trees.first_hit[to]);
+    for (std::size_t sample = from; sample < to; ++sample)
+      next.first_hit.push_back(hit_place(here + trees.first_hit[sample + 1] - begin));
+  };
+  std::size_t sample = 0;  // that is not there yet
+  for (std::size_t k = 0; k < fresh.samples.size(); ++k) {
+    keep(sample, fresh.samples[k]);
+    const std::span<const Hit> hits = fresh.hits_at(k);
     next.hits.insert(next.hits.end(), hits.begin(), hits.end());
     next.first_hit.push_back(hit_place(next.hits.size()));
+    sample = fresh.samples[k] + std::size_t{1};
   }
+  keep(sample, trees.paths.size());
   next.paths = std::move(trees.paths);
   return next;
 }
@@ -46,6 +56,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
       has_been_composed_(image_.light_sums.size(), 0),
       sum_versions_(image_.light_sums.size(), 1),
       kept_rays_(image_.light_sums.size()),
+      kept_segments_(image_.light_sums.size()),
       kept_terms_(image_.light_sums.size()),
       residency_(residency),
       lights_(std::move(lights)),

@@ -19,6 +19,7 @@
 #include "image/regions.h"
 #include "image/tile_layers.h"
 #include "trace/update/kept_rays.h"
+#include "trace/update/kept_segments.h"
 
 namespace relook {
 
@@ -97,6 +98,9 @@ class StoredImage {
   void keep_rays(std::size_t tile, TileRays rays);
   /// Of the rays that are kept. Not while they are leased.
   void forget_weights(std::size_t tile);
+  /// The same of where segments run; PieceKind::kept_segments.
+  [[nodiscard]] const TileSegments& kept_segments(std::size_t tile) const { return kept_segments_[tile]; }
+  void keep_segments(std::size_t tile, TileSegments segments);
   /// The same of terms for the next edit of parameters; PieceKind::kept_terms.
   [[nodiscard]] const TileTerms& kept_terms(std::size_t tile) const { return kept_terms_[tile]; }
   void keep_terms(std::size_t tile, TileTerms terms);
@@ -133,6 +137,7 @@ class StoredImage {
   std::vector<std::uint32_t> sum_versions_;      // by tile, from 1 on: of the samples behind its sums
   Pool<LayerWork> layer_work_;
   std::vector<TileRays> kept_rays_;              // by tile; of paths
+  std::vector<TileSegments> kept_segments_;      // likewise
   std::vector<TileTerms> kept_terms_;            // likewise
   Residency& residency_;
   std::vector<LightId> lights_;

@@ -1,5 +1,5 @@
 // What a stored image keeps of the path integrator beside trees, tile by tile: sums of light, the pixels that they give,
-// and rays.
+// rays, segments and terms.
 #include <memory>
 #include <utility>
 
@@ -22,6 +22,7 @@ PieceHandler handler_of_derived(std::vector<Piece>& pieces) {
 void StoredImage::add_derived() {
   residency_.add_kind(PieceKind::light_layers, layers_.size(), handler_of_derived(layers_));
   residency_.add_kind(PieceKind::kept_rays, kept_rays_.size(), handler_of_derived(kept_rays_));
+  residency_.add_kind(PieceKind::kept_segments, kept_segments_.size(), handler_of_derived(kept_segments_));
   residency_.add_kind(PieceKind::kept_terms, kept_terms_.size(), handler_of_derived(kept_terms_));
 }
 
@@ -41,6 +42,12 @@ void StoredImage::keep_rays(std::size_t tile, TileRays rays) {
   constexpr double kSecondsPerRay = 1e-6;  // to expand it again
   const double seconds = static_cast<double>(rays.rays.size()) * kSecondsPerRay;
   keep_derived(PieceKind::kept_rays, tile, kept_rays_, std::move(rays), seconds);
+}
+
+void StoredImage::keep_segments(std::size_t tile, TileSegments segments) {
+  constexpr double kSecondsPerByte = 1e-8;  // to look at trees again instead
+  const double seconds = static_cast<double>(segments.bytes()) * kSecondsPerByte;
+  keep_derived(PieceKind::kept_segments, tile, kept_segments_, std::move(segments), seconds);
 }
 
 void StoredImage::forget_weights(std::size_t tile) {

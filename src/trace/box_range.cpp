@@ -1,5 +1,6 @@
 #include "trace/box_range.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace relook {
@@ -27,7 +28,7 @@ std::optional<SegmentRange> range_in(const Box& box, float condition, const Poin
   if (box.isEmpty()) return std::nullopt;
   constexpr double kRounding = 0x1p-16;
   double largest = 0;
-  for (int axis = 0; axis < 3; ++axis) largest = std::fmax(largest, std::fabs(static_cast<double>(origin[axis])));
+  for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(static_cast<double>(origin[axis])));
   const double margin = kRounding * largest * static_cast<double>(condition);
   SegmentRange range{0, static_cast<double>(t_max)};
   for (int axis = 0; axis < 3; ++axis) {
@@ -39,8 +40,8 @@ std::optional<SegmentRange> range_in(const Box& box, float condition, const Poin
       continue;
     }
     const double a = low / slope, b = high / slope;
-    range.enter = std::fmax(range.enter, std::fmin(a, b));
-    range.leave = std::fmin(range.leave, std::fmax(a, b));
+    range.enter = std::max(range.enter, std::min(a, b));
+    range.leave = std::min(range.leave, std::max(a, b));
   }
   if (range.enter > range.leave) return std::nullopt;
   return range;

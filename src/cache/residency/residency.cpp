@@ -20,6 +20,8 @@ std::string_view kind_name(PieceKind kind) {
       return "light_layers";
     case PieceKind::kept_rays:
       return "kept_rays";
+    case PieceKind::kept_segments:
+      return "kept_segments";
     case PieceKind::kept_terms:
       return "kept_terms";
     case PieceKind::tunnels:

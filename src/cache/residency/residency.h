@@ -24,10 +24,11 @@ enum class PieceKind : std::uint8_t {
   light_sums,
   light_layers,
   kept_rays,
+  kept_segments,
   kept_terms,
   tunnels
 };
-inline constexpr std::size_t kPieceKinds = 7;
+inline constexpr std::size_t kPieceKinds = 8;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
 [[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 

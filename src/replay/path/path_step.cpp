@@ -1,11 +1,13 @@
 #include "replay/path/path_step.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 #include "edit/apply.h"
 #include "image/image_pieces.h"
 #include "replay/path/path_tile.h"
+#include "trace/box_range.h"
 #include "trace/tree/path_cursor.h"
 
 namespace relook {
@@ -103,6 +105,28 @@ void count(const PathTileResult& tile, Counters& counters) {
 
 constexpr std::size_t kMostKeptSums = 0xFFFF;  // that TermPlace can tell
 
+/// The boxes of what a step moves or hides, and of where that was.
+SegmentSelection segment_selection(const ChangeBoxes& boxes) {
+  const auto of = [](const BoxSet& set) { return SelectionBoxes{set.all, set.parts}; };
+  return {{of(boxes.moved), of(boxes.shadows_after), of(boxes.shadows_before)}, boxes.condition};
+}
+
+/// A grid in which the segments of the scene can be told from such a selection.
+SegmentGrid segment_grid(const RayScene& scene, const SegmentSelection& selection) {
+  Box all, moved;
+  for (std::uint32_t object = 0; object < scene.size(); ++object)
+    if (scene.object(ObjectId(object)).alive) all.extendBy(world_bounds(scene.object(ObjectId(object))));
+  for (const SelectionBoxes& boxes : selection.of) moved.extendBy(boxes.all);
+  if (moved.isEmpty()) return {};
+  all.extendBy(moved);
+  float largest = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    largest = std::max(largest, std::max(std::fabs(all.min[axis]), std::fabs(all.max[axis])));
+  const float margin = 0x1p-16F * largest * selection.condition;  // what tests add for rays that set out that far away
+  const Point around(margin, margin, margin);
+  return {all, Box(moved.min - around, moved.max + around)};
+}
+
 /// Brings trees and sums up to date, tile by tile.
 class PathUpdate {
  public:
@@ -113,12 +137,14 @@ class PathUpdate {
     const ColorScene before(change_.rays_before, *change_.scene_before);
     const TilePrograms programs_before(before), programs_after(parts_.rays);
     const Tracer::TopLevel* level = nullptr;
+    SegmentSelection selection;
     if (change_.step.touches_rays() || may_trace_tiles()) {
       level = &parts_.current_level({});
       parts_.residency.require_floor();
       build_selection(change_.step, parts_.rays, {}, parts_.level->tracer());
       const ChangeBoxes boxes = boxes_of(change_.step, parts_.rays);
       change_.step.rays.bounds = {boxes.moved.all, boxes.shadows_before.all, boxes.shadows_after.all, boxes.condition};
+      selection = segment_selection(boxes);
     }
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
@@ -127,6 +153,10 @@ class PathUpdate {
     PathPass pass{change_,    stored_.image(), programs_before, programs_after, grow_before,
                   grow_after, shaders_before,  shaders_after,   term_memory};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
+    if (change_.step.touches_segments() && !change_.step.rays.lights_changed) {
+      pass.selection = std::move(selection);
+      if (may_write_segments(pass)) pass.segment_grid = segment_grid(parts_.rays, pass.selection);
+    }
     if (pass.ray_use == RayUse::colors && !change_.relights()) pass.term_parameters = term_parameters();
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
@@ -147,6 +177,25 @@ class PathUpdate {
     return parts_.residency.is_limited() || !std::ranges::all_of(stored_.image().trees, has_hits);
   }
 
+  /// Are there tiles, or may there be some, whose segments are not known, or not as the step wants them?
+  [[nodiscard]] bool may_write_segments(const PathPass& pass) const {
+    if (parts_.residency.is_watched() || pass.ray_use != RayUse::tests) return true;
+    for (std::size_t tile = 0; tile < stored_.image().trees.size(); ++tile)
+      if (stored_.kept_segments(tile).empty() || !stored_.kept_segments(tile).can_tell(pass.selection)) return true;
+    return false;
+  }
+  /// By sample: may what moves touch its tree? Empty: not known. Requires: PieceKind::kept_segments is leased.
+  [[nodiscard]] std::vector<std::uint8_t> find_touched(const PathPass& pass, std::size_t tile) const {
+    const TileSegments& segments = stored_.kept_segments(tile);
+    std::vector<std::uint8_t> touched;
+    if (segments.empty() || pass.ray_use != RayUse::tests || !change_.step.touches_segments() ||
+        !segments.can_tell(pass.selection))
+      return touched;
+    touched.resize(segments.samples());
+    segments.find_touched(pass.selection, touched);
+    return touched;
+  }
+
   /// Of an edit of the colours of opaque materials that tint no light; else none.
   [[nodiscard]] std::optional<ParameterSet> term_parameters() const {
     const ColorChange& colors = change_.step.colors;
@@ -165,18 +214,24 @@ class PathUpdate {
     return parameters;
   }
   /// Is a tile traced as a whole in less time than its trees are updated? Trees of changed objects are expanded as they
-  /// were, shaded, grown anew and shaded again, about twice the work of tracing them; the others are tested.
-  [[nodiscard]] bool is_sooner_traced(const PathPass& pass, std::size_t tile) const {
+  /// were, shaded, grown anew and shaded again, about twice the work of tracing them; the others are tested, unless they
+  /// are known to be left alone.
+  [[nodiscard]] bool is_sooner_traced(const PathPass& pass, std::size_t tile,
+                                      std::span<const std::uint8_t> touched) const {
     if (pass.grow_after.level == nullptr || change_.step.rays.only_lights()) return false;
     const double kUpdated = 2.2, kTested = stored_.kept_rays(tile).empty() ? 0.6 : 0.4;  // over the time to trace
     const Image& image = stored_.image();
-    double all = 0, updated = 0;
-    for (const PathId path : image.trees[tile].paths) {
-      const auto work = static_cast<double>(image.paths.words(path).size());
+    const std::vector<PathId>& paths = image.trees[tile].paths;
+    double all = 0, updated = 0, tested = 0;
+    for (std::size_t sample = 0; sample < paths.size(); ++sample) {
+      const auto work = static_cast<double>(image.paths.words(paths[sample]).size());
       all += work;
-      if (pass.named_path[path.index()] != 0) updated += work;
+      if (pass.named_path[paths[sample].index()] != 0)
+        updated += work;
+      else if (touched.empty() || touched[sample] != 0)
+        tested += work;
     }
-    return updated * kUpdated + (all - updated) * kTested > all;
+    return updated * kUpdated + tested * kTested > all;
   }
 
   [[nodiscard]] static bool may_recolor(const PathPass& pass, const TileTerms& terms) {
@@ -184,16 +239,24 @@ class PathUpdate {
   }
 
   void update(const PathPass& pass, std::size_t tile, PathTileResult& result) {
-    const auto trees = parts_.residency.use(PieceKind::ray_trees, tile);
+    std::optional<Residency::Lease> trees;
     {
+      const auto segments = parts_.residency.use(PieceKind::kept_segments, tile);
+      std::vector<std::uint8_t> touched = find_touched(pass, tile);
+      if (auto left = leave_path_tile(pass, tile, stored_.kept_segments(tile), touched)) {
+        result = std::move(*left);
+        return;
+      }
+      trees.emplace(parts_.residency.use(PieceKind::ray_trees, tile));
       const auto sums = parts_.residency.use(PieceKind::light_sums, tile);
       const auto rays = parts_.residency.use(PieceKind::kept_rays, tile);
       const auto terms = parts_.residency.use(PieceKind::kept_terms, tile);
       const PackedSums& sums_before = stored_.image().light_sums[tile];
       if (may_recolor(pass, stored_.kept_terms(tile)))
         result = recolor_path_tile(pass, tile, sums_before, stored_.kept_terms(tile));
-      else if (has_hits(stored_.image().trees[tile]) && !is_sooner_traced(pass, tile))
-        result = update_path_tile(pass, tile, sums_before, stored_.kept_rays(tile));
+      else if (has_hits(stored_.image().trees[tile]) && !is_sooner_traced(pass, tile, touched))
+        result = update_path_tile(
+            pass, tile, {sums_before, stored_.kept_rays(tile), stored_.kept_segments(tile), std::move(touched)});
       else
         result = trace_path_tile(pass, tile);
     }
@@ -202,6 +265,8 @@ class PathUpdate {
     result.terms.reset();
     if (result.rays) stored_.keep_rays(tile, std::move(*result.rays));
     result.rays.reset();
+    if (result.segments) stored_.keep_segments(tile, std::move(*result.segments));
+    result.segments.reset();
     stored_.keep_hits(result.fresh);
     if (result.has_changed) stored_.keep_sums(tile, std::move(result.sums));
     result.sums = {};

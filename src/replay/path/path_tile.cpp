@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "replay/path/ray_recorder.h"
+#include "replay/path/segment_recorder.h"
 #include "trace/tree/pack.h"
 
 namespace relook {
@@ -38,14 +39,40 @@ Pool<TermMemory>::Loan term_memory_of(const PathPass& pass) {
   return pass.term_memory.take([] { return std::make_unique<TermMemory>(); });
 }
 
+/// Have sums other places, or are there others?
+bool is_reordered(const PathPass& pass) {
+  return pass.before.places().count != pass.after.places().count || !std::ranges::is_sorted(pass.change.old_of_new);
+}
+
+SegmentRecorder::Mode record_mode(const PathPass& pass, const KeptOfTile& kept) {
+  const StepChange& step = pass.change.step;
+  if (!step.touches_rays() || step.rays.lights_changed) return SegmentRecorder::Mode::none;
+  if (!pass.segment_grid.empty() && kept.touched.empty()) return SegmentRecorder::Mode::all;
+  return kept.segments.empty() ? SegmentRecorder::Mode::none : SegmentRecorder::Mode::changes;
+}
+
+bool is_left_alone(const PathPass& pass, std::span<const std::uint8_t> touched, std::uint32_t sample, PathId path) {
+  return !touched.empty() && touched[sample] == 0 && pass.named_path[path.index()] == 0 &&
+         pass.shade_path[path.index()] == 0;
+}
+void count_left_alone(const PathPass& pass, const TileSegments& segments, std::uint32_t sample,
+                      CulledSegments& culled) {
+  for (std::size_t kind = 0; kind < kSegmentKinds; ++kind) {
+    const bool is_tested = !pass.selection.of[kind].all.isEmpty();
+    (is_tested ? culled.boxes : culled.by_class) += segments.count(static_cast<SegmentKind>(kind), sample);
+  }
+}
+
 class PathTileUpdater {
  public:
-  /// `rays`: as kept; empty: nothing. `records_all`: every sample will be grown.
-  PathTileUpdater(const PathPass& pass, std::size_t tile, const TileRays& rays, bool records_all)
+  /// `records_all`: every sample will be grown, unless it is known to be left alone.
+  PathTileUpdater(const PathPass& pass, std::size_t tile, const KeptOfTile& kept, bool records_all)
       : pass_(pass),
-        rays_(rays),
-        use_(is_usable(rays, pass.ray_use) ? pass.ray_use : RayUse::none),
-        recorder_(rays, records_all && use_ == RayUse::none),
+        kept_(kept),
+        rays_(kept.rays),
+        use_(is_usable(kept.rays, pass.ray_use) ? pass.ray_use : RayUse::none),
+        recorder_(kept.rays, records_all && use_ == RayUse::none && kept.touched.empty()),
+        segments_(record_mode(pass, kept), kept.segments, pass.segment_grid),
         trees_(pass.image.trees[tile]),
         rect_(tile_rect(tile, pass.image.frame.width, pass.image.frame.height)),
         samples_(pass.image.view.samples),
@@ -62,23 +89,24 @@ class PathTileUpdater {
         misses_are_dark_(are_misses_dark()) {
     result_.fresh.tile = tile;
     if (pass.term_parameters) terms_.parameters = *pass.term_parameters;
+    changed_.block.keeps_lines = segments_.is_on();
   }
 
-  PathTileResult update(const PackedSums& sums) {
+  PathTileResult update() {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
     if (recorder_.has_news()) result_.rays = recorder_.take();
-    const bool is_reordered =
-        pass_.before.places().count != pass_.after.places().count || !std::ranges::is_sorted(pass_.change.old_of_new);
+    take_segments();
+    const bool is_remapped = is_reordered(pass_);
     // Terms say by number into which sum they go: a light that is gone may leave no sample to be shaded, but others'
     // places.
-    const bool is_other = result_.samples > 0 || is_reordered || pass_.change.step.rays.lights_changed;
+    const bool is_other = result_.samples > 0 || is_remapped || pass_.change.step.rays.lights_changed;
     if (pass_.term_parameters || is_other) result_.terms = std::move(terms_);
-    if (result_.samples == 0 && !pass_.change.any_afresh() && !is_reordered) {
-      result_.sums = sums;
+    if (result_.samples == 0 && !pass_.change.any_afresh() && !is_remapped) {
+      result_.sums = kept_.sums;
       return std::move(result_);
     }
-    TileSums all = sums.unpack();
+    TileSums all = kept_.sums.unpack();
     all.add(old_terms_);
     all = all.remapped(pass_.change.old_of_new);
     for (std::size_t sum = 0; sum < pass_.change.afresh.size(); ++sum)
@@ -102,6 +130,7 @@ class PathTileUpdater {
       for (std::uint32_t k = 0; k < changed_.roots.size(); ++k) {
         pack_sample(changed_, changed_.roots[k], first + k);
         recorder_.record(changed_.block, changed_.roots[k], first + k);
+        if (segments_.records_all()) record_segments(changed_.roots[k]);
       }
       changed_.is_recorded.assign(changed_.roots.size(), 1);
       result_.samples += last - first;
@@ -109,6 +138,8 @@ class PathTileUpdater {
       shade(changed_, *shader_after_, TermSign::add, new_terms_, {});
     }
     result_.rays = recorder_.take();
+    if (!segments_.records_all() && pass_.change.step.touches_rays()) result_.segments = TileSegments();
+    take_segments();
     result_.sums = PackedSums::pack(new_terms_);
     result_.has_changed = true;
     return std::move(result_);
@@ -117,13 +148,15 @@ class PathTileUpdater {
  private:
   void update_sample(std::uint32_t sample) {
     const PathId path = trees_.paths[sample];
+    if (is_left_alone(pass_, kept_.touched, sample, path))
+      return count_left_alone(pass_, kept_.segments, sample, result_.counters.culled);
     const bool updates = pass_.update_path[path.index()] != 0, shades = pass_.shade_path[path.index()] != 0;
     const bool relights = (adds_ || takes_) && (pass_.relight_path.empty() || pass_.relight_path[path.index()] != 0);
     if (!updates && !shades && !relights) return;
+    const bool is_named = pass_.named_path[path.index()] != 0;
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     StoredTree stored{PathCursor(pass_.image.paths.words(path), {pass_.change.step.rays.old_lights.size(), 0}),
                       trees_.hits_of(sample)};
-    const bool is_named = pass_.named_path[path.index()] != 0;
     if (use_ == RayUse::lights && is_dark(stored.cursor)) return;
     const bool is_along_kept = use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named;
     if (is_along_kept) stored.kept = rays_.rays.data() + rays_.first[sample];
@@ -143,6 +176,8 @@ class PathTileUpdater {
     const bool is_whole = shades || what == TreeChange::all;
     const bool is_recorded = recorder_.is_on() && (recorder_.records_all() || is_whole || is_named);
     if (is_recorded) recorder_.record(changed_.block, root, sample);
+    if (segments_.records_all() || (segments_.is_on() && updates && (is_named || what != TreeChange::none)))
+      record_segments(root);
     const bool adds = is_whole || (relights && adds_), takes = is_whole || (relights && takes_);
     if (adds || (takes && is_shared_)) {
       changed_.roots.push_back(root);
@@ -167,10 +202,19 @@ class PathTileUpdater {
     TreeChange what = TreeChange::none;
     update_tree(pass_.grow_after, pass_.change.step.rays, nullptr, primary, sample, stored, changed_.block, counters,
                 what);
+    const bool is_kept = what != TreeChange::all;
+    if (is_kept && segments_.records_all()) record_segments(static_cast<std::uint32_t>(mark.nodes));
     changed_.block.rewind(mark);
-    if (what == TreeChange::all) return false;
-    result_.counters += counters;
-    return true;
+    if (is_kept) result_.counters += counters;
+    return is_kept;
+  }
+
+  void record_segments(std::uint32_t root) { segments_.record(pass_.grow_after.scene, changed_.block, root); }
+  void take_segments() {
+    if (segments_.has_news())
+      result_.segments = segments_.take();
+    else if (pass_.change.step.rays.lights_changed)
+      result_.segments = TileSegments();
   }
 
   /// Is a sample whose ray from the eye meets nothing none of those that lights bring terms to?
@@ -267,9 +311,11 @@ class PathTileUpdater {
   }
 
   const PathPass& pass_;
+  const KeptOfTile& kept_;
   const TileRays& rays_;
   RayUse use_;
   RayRecorder recorder_;
+  SegmentRecorder segments_;
   const TileTrees& trees_;
   TileRect rect_;
   std::uint32_t samples_;
@@ -291,8 +337,21 @@ class PathTileUpdater {
 
 }  // namespace
 
-PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums, const TileRays& rays) {
-  return PathTileUpdater(pass, tile, rays, pass.updates_all).update(sums);
+PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const KeptOfTile& kept) {
+  return PathTileUpdater(pass, tile, kept, pass.updates_all).update();
+}
+
+std::optional<PathTileResult> leave_path_tile(const PathPass& pass, std::size_t tile, const TileSegments& segments,
+                                              std::span<const std::uint8_t> touched) {
+  if (touched.empty() || is_reordered(pass) || pass.change.any_afresh()) return std::nullopt;
+  PathTileResult result;
+  result.fresh.tile = tile;
+  const std::vector<PathId>& paths = pass.image.trees[tile].paths;
+  for (std::uint32_t sample = 0; sample < paths.size(); ++sample) {
+    if (!is_left_alone(pass, touched, sample, paths[sample])) return std::nullopt;
+    count_left_alone(pass, segments, sample, result.counters.culled);
+  }
+  return result;
 }
 
 PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
@@ -312,8 +371,11 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
 }
 
 PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile) {
-  static const TileRays kNone;
-  return PathTileUpdater(pass, tile, kNone, true).trace();
+  const PackedSums no_sums;
+  const TileRays no_rays;
+  const TileSegments no_segments;
+  const KeptOfTile nothing{no_sums, no_rays, no_segments};
+  return PathTileUpdater(pass, tile, nothing, true).trace();
 }
 
 }  // namespace relook

@@ -10,6 +10,7 @@
 #include "replay/replay_parts.h"
 #include "trace/tree/grow.h"
 #include "trace/update/kept_rays.h"
+#include "trace/update/kept_segments.h"
 
 namespace relook {
 
@@ -39,13 +40,24 @@ struct PathPass {
   std::vector<std::uint8_t> named_path{};  // by path: it names an object with a flag
   bool updates_all = false;                // every path is in update_path
   RayUse ray_use = RayUse::none;
+  SegmentSelection selection{};  // of a step that moves something and no light
+  SegmentGrid segment_grid{};    // in which such a step writes segments down; empty: it does not
   std::optional<ParameterSet> term_parameters{};  // those of an edit for whose like terms are kept
+};
+
+/// What there is of a tile before an edit.
+struct KeptOfTile {
+  const PackedSums& sums;
+  const TileRays& rays;                  // empty: not kept
+  const TileSegments& segments;          // empty: not kept
+  std::vector<std::uint8_t> touched{};   // by sample: may the selection touch its tree? Empty: not known
 };
 
 struct PathTileResult {
   NewSamples fresh;                // trees alone
   std::optional<TileRays> rays;    // to be kept from now on; none: as before
   std::optional<TileTerms> terms;  // likewise
+  std::optional<TileSegments> segments;  // likewise; empty: they do not hold any more
   bool has_other_weights = false;  // than those that are kept with rays
   PackedSums sums;                 // of the tile as it is now
   bool has_changed = false;
@@ -53,9 +65,12 @@ struct PathTileResult {
   GrowCounters counters;
 };
 
-/// `sums`, `rays`: of the tile before the edit. Requires: the tile's hits are there.
-[[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
-                                              const TileRays& rays);
+/// Requires: the tile's hits are there.
+[[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const KeptOfTile& kept);
+/// The same of a tile in which all stays as it is; none: something may change. Asks for no piece but the segments.
+[[nodiscard]] std::optional<PathTileResult> leave_path_tile(const PathPass& pass, std::size_t tile,
+                                                            const TileSegments& segments,
+                                                            std::span<const std::uint8_t> touched);
 /// The same of a tile whose terms are kept for what the edit changes.
 [[nodiscard]] PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
                                                const TileTerms& terms);

@@ -45,14 +45,24 @@ class RayRecorder {
     all.first.reserve(kept_.first.size());
     all.rays.reserve(kept_.rays.size());
     all.weights.reserve(kept_.weights.size());
-    std::size_t next = 0;
-    for (std::uint32_t sample = 0; sample < kept_.samples(); ++sample) {
-      if (next < samples_.size() && samples_[next] == sample)
-        all.append(fresh_, next++);
-      else
-        all.append(kept_, sample);
+    const bool with_weights = kept_.has_weights() && fresh_.has_weights();
+    std::size_t next = 0;  // sample that is not there yet
+    for (std::size_t k = 0; k < samples_.size(); ++k) {
+      append(kept_, next, samples_[k], with_weights, all);
+      append(fresh_, k, k + 1, with_weights, all);
+      next = samples_[k] + std::size_t{1};
     }
+    append(kept_, next, kept_.samples(), with_weights, all);
     return all;
+  }
+  /// Appends samples from `from` up to `to`.
+  static void append(const TileRays& some, std::size_t from, std::size_t to, bool with_weights, TileRays& all) {
+    const std::uint32_t begin = some.first[from], end = some.first[to];
+    const std::size_t here = all.rays.size();
+    all.rays.insert(all.rays.end(), some.rays.begin() + begin, some.rays.begin() + end);
+    if (with_weights) all.weights.insert(all.weights.end(), some.weights.begin() + begin, some.weights.begin() + end);
+    for (std::size_t sample = from; sample < to; ++sample)
+      all.first.push_back(hit_place(here + some.first[sample + 1] - begin));
   }
 
   const TileRays& kept_;

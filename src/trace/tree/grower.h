@@ -48,7 +48,7 @@ class Grower {
     complete(node, g_.scene.object(object), coverage);
     node.first_light = static_cast<std::uint32_t>(b_.lights.size());
     if (b_.lights.size() + lights().size() > kNoNode) throw std::bad_alloc();  // more than first_light can tell
-    b_.lights.resize(b_.lights.size() + lights().size());
+    b_.resize_lights(b_.lights.size() + lights().size());
   }
 
   /// The ray as it is traced: behind the hit that it goes straight on from.
@@ -117,6 +117,7 @@ class Grower {
     const RayNode& node = b_.nodes[index];
     if (!is_lit(g_.scene.object(node.object), node)) return false;
     segment = shadow_segment(node, g_.scene.light(light));
+    if (segment.faces) keep_line(node, light, segment);
     return segment.faces;
   }
 
@@ -160,7 +161,9 @@ class Grower {
       for (std::size_t k = 0; k < count; ++k)
         for (std::size_t light = 0; light < lights().size(); ++light) {
           const ShadowSegment& segment = segments[light * kMostTogether + k];
-          if (segment.faces) trace_light(hits[k], light, segment, counters);
+          if (!segment.faces) continue;
+          keep_line(*nodes[k], light, segment);
+          trace_light(hits[k], light, segment, counters);
         }
     }
   }
@@ -191,6 +194,10 @@ class Grower {
   std::vector<FilterNode> filters_;
 
  private:
+  void keep_line(const RayNode& node, std::size_t light, const ShadowSegment& segment) const {
+    if (b_.keeps_lines) b_.lines[node.first_light + light] = {segment.origin, segment.direction, segment.t_max};
+  }
+
   [[nodiscard]] bool passes_light(const Crossing& crossing) const {
     return g_.scene.object(crossing.object).optics.passes_light;
   }

@@ -7,11 +7,17 @@
 
 namespace relook {
 
-/// A stored ray from where it was spawned on, as far as rounding tells; its end is to be set.
+/// A stored ray that meets nothing, from where it was spawned on, as far as rounding tells.
 [[nodiscard]] inline Ray stored_segment(const SpawnedRay& ray) {
   Ray segment = ray_of(ray);
   segment.behind = {};
   segment.t_min = std::max(ray.travelled - ray.travelled_slack, ray.start);
+  return segment;
+}
+/// The ray of a completed hit. `slack`: distance_slack().
+[[nodiscard]] inline Ray stored_segment(const RayNode& node, float slack) {
+  Ray segment = stored_segment(node.ray);
+  segment.t_max = std::min(node.length + slack, node.ray.end);
   return segment;
 }
 

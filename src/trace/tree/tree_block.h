@@ -85,6 +85,13 @@ struct FilterNode {
   float cosine = 0;         // of the segment with the geometric normal
 };
 
+/// Where a shadow segment runs: as ShadowSegment.
+struct SegmentLine {
+  Point origin{0, 0, 0};
+  Direction direction{0, 0, 1};
+  float t_max = 0;
+};
+
 struct TreeBlock {
   std::vector<RayNode> nodes;
   std::vector<LightLink> lights;
@@ -92,6 +99,8 @@ struct TreeBlock {
   std::vector<VertexLobes> lobes;            // of the path integrator
   std::vector<LightSample> samples;          // of it, of lights that reach a hit
   std::vector<std::uint32_t> blocker_words;  // entries of blocked lights, as in paths
+  std::vector<SegmentLine> lines;            // of `lights`, where their segments have been worked out
+  bool keeps_lines = false;                  // else there are none
 
   /// The entry of a blocked light. Requires: shadows are counted.
   [[nodiscard]] std::span<const std::uint32_t> blocker_entry(const LightLink& link) const;
@@ -105,13 +114,17 @@ struct TreeBlock {
   }
   void rewind(const Mark& mark) {
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(mark.nodes), nodes.end());
-    lights.resize(mark.lights);
+    resize_lights(mark.lights);
     filters.resize(mark.filters);
     lobes.resize(mark.lobes);
     samples.resize(mark.samples);
     blocker_words.resize(mark.blocker_words);
   }
   void clear() { rewind({}); }
+  void resize_lights(std::size_t count) {
+    lights.resize(count);
+    if (keeps_lines) lines.resize(count);
+  }
 };
 
 /// Fills length, footprint, point and coverage of a node whose ray, object and hit are set. `coverage`: its choice, or

@@ -119,7 +119,7 @@ class ShadowUpdater {
       if (l.before == ShadowState::filtered) grower_.gathers(l.index, l.light, l.segment);
       return keep(l);
     }
-    if (keeps_states_ && !l.is_new && grower_.grow().shadow_bits == 0) {
+    if (keeps_states_ && !l.is_new && grower_.grow().shadow_bits == 0 && !grower_.block().keeps_lines) {
       if (l.before == ShadowState::facing_away) return;
       if (l.before != ShadowState::filtered && touched && is_away(l.light, l.before)) {
         ++counters_.culled.boxes;

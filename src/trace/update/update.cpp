@@ -70,7 +70,7 @@ class Updater {
     float slack = 0;
     if (touched && !node.is_miss()) {
       slack = distance_slack(block.nodes[index], grower_.grow().scene.object(node.object));
-      segment.t_max = std::min(block.nodes[index].length + slack, ray.end);
+      segment = stored_segment(block.nodes[index], slack);
     }
     if (!tests_.tests_ray(touched, segment)) return false;
     Meeting meeting = Tracer::intersect(change_.moved_after, segment);
@@ -96,7 +96,7 @@ class Updater {
     note(TreeChange::all);
     if (stored_.kept != nullptr) return true;  // restored rays cannot grow
     TreeBlock& block = grower_.block();
-    if (!node.is_miss()) block.lights.resize(block.nodes[index].first_light);
+    if (!node.is_miss()) block.resize_lights(block.nodes[index].first_light);
     counters_.culled.dropped += node.shadow_segments + skip_children(stored_, node);
     grower_.trace_from(index, meeting, counters_);
     grower_.trace_lights(index, counters_);
