@@ -44,7 +44,7 @@ void TermKeeper::begin(std::span<const Color> steps, std::span<const Color> weig
 
 bool TermKeeper::is_tinted(const LightLink& link) const {
   for (std::uint32_t f = 0; f < filters_of(link); ++f)
-    if (yielded_tint_[link.first + f] != kNoNode) return true;
+    if (is_yielded(link.first + f)) return true;
   return false;
 }
 
@@ -155,8 +155,7 @@ void TermKeeper::add_lit_product(const LightTerm& term, FactorId value) {
   add_product(term.node, term.light, value);
   const LightLink& link = link_of(term);
   for (std::uint32_t f = link.first; f < link.first + filters_of(link); ++f) {
-    const bool stays = yielded_tint_.empty() || yielded_tint_[f] == kNoNode;
-    add_factor(stays ? constant(tints_[f]) : FactorId::yielded(yielded_tint_[f]));
+    add_factor(is_yielded(f) ? FactorId::yielded(yielded_tint_[f]) : constant(tints_[f]));
   }
   const float scale = block_.nodes[term.node].coverage.scale();
   if (scale != 1) add_factor(constant({scale, scale, scale}));

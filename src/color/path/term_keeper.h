@@ -50,6 +50,10 @@ class TermKeeper {
   [[nodiscard]] const LightLink& link_of(const LightTerm& term) const {
     return block_.lights[block_.nodes[term.node].first_light + term.light];
   }
+  /// Does a filter's tint change?
+  [[nodiscard]] bool is_yielded(std::uint32_t filter) const {
+    return !yielded_tint_.empty() && yielded_tint_[filter] != kNoNode;
+  }
   /// Filters of a link.
   [[nodiscard]] std::uint32_t filters_of(const LightLink& link) const {
     return link.state == ShadowState::filtered ? link.filters : 0;
@@ -83,7 +87,7 @@ class TermKeeper {
   std::vector<std::uint8_t> is_source_, is_below_;  // by node
   std::vector<std::uint32_t> slot_;                 // by node: in kept_
   std::vector<std::uint32_t> first_yielded_;        // by node, of sources: factors
-  std::vector<std::uint32_t> yielded_tint_;         // by filter: a factor; kNoNode: it stays as it is
+  std::vector<std::uint32_t> yielded_tint_;         // by filter: a factor; kNoNode: it stays; empty: all do
   std::vector<std::uint32_t> opening_;              // by node: in kept_; kNoNode: it stays as it is
   std::size_t yielded_ = 0;                         // factors so far
   std::vector<PlainTerm> plain_;                    // in no order
