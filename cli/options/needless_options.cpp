@@ -129,7 +129,6 @@ std::vector<std::string> idle_structures_warning(const Arguments& arguments, Int
   note("--groups", named.groups.value_or(0) > 0);
   note("--atoms", named.atoms.value_or(0) > 0);
   note("--color-trees", named.color_trees_percent.value_or(0) > 0);
-  note("--params", !arguments.structures.params.empty());
   if (options.empty()) return {};
   return {options + ": of --integrator whitted alone; images of path keep rays and terms of light in their place"};
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kMostParts = 64;                                          
 constexpr int kDeepest = 8;
 constexpr std::size_t kMostDetailBytes = 8192;  // of one entry
 
-constexpr std::array<std::string_view, 30> kColumns{"/step",
+constexpr std::array<std::string_view, 32> kColumns{"/step",
                                                     "/pixels_changed",
                                                     "/samples_affected",
                                                     "/regions_visited",
@@ -36,6 +36,8 @@ constexpr std::array<std::string_view, 30> kColumns{"/step",
                                                     "/resident/ray_trees",
                                                     "/resident/sample_colors",
                                                     "/resident/light_sums",
+                                                    "/resident/kept_rays",
+                                                    "/resident/kept_terms",
                                                     "/resident/color_trees",
                                                     "/resident/groups",
                                                     "/resident/tunnels",

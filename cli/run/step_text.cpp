@@ -53,6 +53,8 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
                                    {"ray_trees", resident.ray_trees},
                                    {"sample_colors", resident.sample_colors},
                                    {"light_sums", resident.light_sums},
+                                   {"kept_rays", resident.kept_rays},
+                                   {"kept_terms", resident.kept_terms},
                                    {"color_trees", resident.color_trees},
                                    {"groups", resident.groups},
                                    {"tunnels", resident.tunnels}});

@@ -32,6 +32,7 @@ Counters& Counters::operator+=(const Counters& other) {
   shadow_updates += other.shadow_updates;
   object_rays += other.object_rays;
   color_trees_evaluated += other.color_trees_evaluated;
+  color_trees_reused += other.color_trees_reused;
   tunnels_read += other.tunnels_read;
   evicted += other.evicted;
   rebuilt += other.rebuilt;

@@ -27,6 +27,7 @@ struct Counters {
   std::uint64_t shadow_updates = 0;                       // shadow segments traced against the whole scene
   std::uint64_t object_rays = 0;                          // rays and shadow segments against one known object
   std::uint64_t color_trees_evaluated = 0;
+  std::uint64_t color_trees_reused = 0;  // of these, from what earlier steps had kept: columns or terms, no ray trees
   std::uint64_t tunnels_read = 0;    // tiles whose tunnels the cache holds and that were used for the first time
   Moves evicted, rebuilt, reloaded;  // rebuilt: worked out again after it had left or had become invalid
 
@@ -39,8 +40,8 @@ struct Seconds {
 
 /// Bytes held in memory by kind.
 struct Resident {
-  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, light_sums = 0, color_trees = 0, groups = 0,
-                tunnels = 0;
+  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, light_sums = 0, kept_rays = 0, kept_terms = 0,
+                color_trees = 0, groups = 0, tunnels = 0;
   std::uint64_t total = 0;  // the frame included
 };
 

@@ -144,9 +144,11 @@ Resident StoredImage::resident() const {
     resident.sample_colors += colors.capacity() * sizeof(Rgba);
   for (const PackedSums& sums : image_.light_sums) resident.light_sums += sums.bytes();
   for (const TileLayers& layers : layers_) resident.light_sums += layers.bytes();
+  for (const TileRays& rays : kept_rays_) resident.kept_rays += rays.bytes();
+  for (const TileTerms& terms : kept_terms_) resident.kept_terms += terms.bytes();
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
   resident.total = resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.light_sums +
-                   resident.groups + resident.tunnels + frame;
+                   resident.kept_rays + resident.kept_terms + resident.groups + resident.tunnels + frame;
   return resident;
 }
 

@@ -106,7 +106,7 @@ class Room {
 /// What became of a tile.
 struct Outcome {
   TileMask changed{};
-  std::size_t samples = 0;
+  std::size_t samples = 0, reused = 0;  // reused: of trees that were compressed before
   GrowCounters grown;
   Moves rebuilt, evicted;
 };
@@ -132,6 +132,7 @@ void count_outcomes(const std::vector<Outcome>& outcomes, std::span<const std::s
     const Outcome& outcome = outcomes[i];
     result.changed_pixels.add(tiles[i], outcome.changed);
     counters.samples_affected += outcome.samples;
+    counters.color_trees_reused += outcome.reused;
     counters.object_rays += outcome.grown.object_rays;
     counters.rebuilt += rebuilt_trees(outcome.grown);
     counters.rebuilt += outcome.rebuilt;
@@ -201,7 +202,10 @@ void Recolorer::run(const StepChange& change, bool evaluates, StepResult& result
     const std::size_t tile = tiles[i];
     TileColorTrees& trees = kept.tiles[tile];
     Outcome& outcome = outcomes[i];
-    if (!trees.is_valid) compress_tile(pass, parts_, tile, found.works[tile].leaves, kept, tools, outcome);
+    if (trees.is_valid)
+      outcome.reused = trees.samples.size();
+    else
+      compress_tile(pass, parts_, tile, found.works[tile].leaves, kept, tools, outcome);
     if (evaluates) {
       const auto memory = memory_.take([] { return std::make_unique<ColorMemory>(); });
       outcome.changed = recolor_tile(trees, tile, parts_.rays.scene(), parts_.stored, *memory);

@@ -60,7 +60,12 @@ struct Replayer::Impl {
   }
 
   void choose_parameters(const std::vector<ParameterSet>& sets) {
-    if (is_path()) return;
+    if (is_path()) {
+      ParameterSet all;  // terms are kept for one set
+      for (const ParameterSet& set : sets) all.add(set);
+      keep_path_terms(parts, all);
+      return;
+    }
     parts.color_trees.choose(sets);
     for (const ParameterSet& set : sets) {
       if (!may_compress()) return;

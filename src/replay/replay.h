@@ -41,7 +41,8 @@ class Replayer {
   [[nodiscard]] Residency& residency();
 
   /// From now on colour trees are kept for these sets of parameters alone, and before a step changes them (paper
-  /// 4.1.1): an edit within one set runs its residuals; any other colour edit goes through the ray trees.
+  /// 4.1.1): an edit within one set runs its residuals; any other colour edit goes through the ray trees. Under
+  /// Integrator::path terms of light are kept for all of them together, until an edit of others.
   void choose_parameters(const std::vector<ParameterSet>& sets);
 
   /// Applies one edit. Throws InputError with everything as before. Not during a drag.

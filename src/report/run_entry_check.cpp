@@ -26,8 +26,9 @@ constexpr std::array<std::string_view, 37> kMembers{
     "ray_updates",    "seconds",    "resident",      "shadow_updates", "evicted",          "rebuilt",
     "reloaded",       "peak_rss",   "resumed",       "exposure",       "overlays",         "verify_percent",
     "verify"};
-constexpr std::array<std::string_view, 2> kFurtherMembers{"color_trees_evaluated", "tunnels_read"};
-constexpr std::array<std::string_view, 14> kCounts{"samples_total",
+constexpr std::array<std::string_view, 3> kFurtherMembers{"color_trees_evaluated", "color_trees_reused",
+                                                           "tunnels_read"};
+constexpr std::array<std::string_view, 15> kCounts{"samples_total",
                                                    "samples_affected",
                                                    "pixels_changed",
                                                    "regions_visited",
@@ -38,13 +39,14 @@ constexpr std::array<std::string_view, 14> kCounts{"samples_total",
                                                    "shadow_updates",
                                                    "object_rays",
                                                    "color_trees_evaluated",
+                                                   "color_trees_reused",
                                                    "tunnels_read",
                                                    "peak_rss",
                                                    "step"};
 constexpr std::array<std::string_view, 5> kClasses{"base", "color", "optical", "geometric", "mixed"};
 constexpr std::array<std::string_view, 7> kPhases{"classify", "select", "test", "update", "evaluate", "write", "total"};
-constexpr std::array<std::string_view, 8> kParts{"ray_paths",   "ray_trees", "sample_colors", "light_sums",
-                                                 "color_trees", "groups",    "tunnels",       "total"};
+constexpr std::array<std::string_view, 10> kParts{"ray_paths", "ray_trees",  "sample_colors", "light_sums", "kept_rays",
+                                                  "kept_terms", "color_trees", "groups",       "tunnels",    "total"};
 constexpr std::array<std::string_view, 6> kMoved{"ray_trees",   "sample_colors", "light_sums",
                                                  "color_trees", "tunnels",       "total"};
 constexpr std::array<std::string_view, 4> kCulledBy{"tunnels", "boxes", "dropped", "class"};

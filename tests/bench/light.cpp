@@ -45,12 +45,14 @@ void print_step(const BenchOptions& options, Replayer& replayer, const Journal& 
   const TimedStep later = timed(replayer, StepKind::step, edits.front(), journal);
   for (std::size_t i = 1; i < edits.size(); ++i) static_cast<void>(timed(replayer, StepKind::step, edits[i], journal));
   const Counters& counters = later.result.counters;
-  std::printf("  %-34s %-10s %9.1f %9.1f %9.1f %8.1f %% %8.1f %%\n", step.name.substr(0, 34).c_str(),
+  const double terms = static_cast<double>(replayer.resident().kept_terms) /
+                       std::max(1.0, static_cast<double>(counters.samples_affected));
+  std::printf("  %-34s %-10s %9.1f %9.1f %9.1f %8.1f %% %8.1f %% %9.0f\n", step.name.substr(0, 34).c_str(),
               std::string(change_class_name(first.result.classification.change)).c_str(),
               full.render / first.seconds, full.render / later.seconds,
               (full.render + full.frame) / (later.seconds + full.frame),
               100.0 * static_cast<double>(counters.samples_affected) / static_cast<double>(counters.samples_total),
-              100.0 * static_cast<double>(counters.pixels_changed) / options.pixels());
+              100.0 * static_cast<double>(counters.pixels_changed) / options.pixels(), terms);
   options.note("Light", step.name, "full render / later edit", full.render / later.seconds);
 }
 
@@ -83,8 +85,8 @@ void print_light(const BenchOptions& given) {
   const Journal journal = read_journal(options.journal);
   FullSeconds full{full_seconds, 0};
   full.frame = time_of([&] { static_cast<void>(encode_exr(replayer->image().frame, {}, PixelFormat::half)); });
-  std::printf("  %-34s %-10s %9s %9s %9s %10s %10s\n", "edit", "class", "full/1st", "full/2nd", "with EXR", "samples",
-              "pixels");
+  std::printf("  %-34s %-10s %9s %9s %9s %10s %10s %9s\n", "edit", "class", "full/1st", "full/2nd", "with EXR",
+              "samples", "pixels", "kept B");
   for (const JournalStep& step : journal.steps) print_step(options, *replayer, journal, step, full);
 }
 

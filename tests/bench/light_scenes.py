@@ -4,7 +4,7 @@ usage: python3 light_scenes.py ASSETS FOLDER
 
   toycar        a product shot: an HDRI, two area lights
   home-theater  a room: an area light under the ceiling, an HDRI
-  garden        sky and sun of an HDRI (build/scenes/garden and build/scenes/product are read, scenes/generate.py writes them)
+  garden        sky and sun of an HDRI, a tree whose leaves let light through (build/scenes/garden and build/scenes/product are read, scenes/generate.py writes them)
 
 ASSETS holds the folders toycar, webxr-home-theater and hdri. Steps are named by what they edit. Standard library only.
 """
@@ -71,10 +71,15 @@ def light_steps(light, eye, size):
                 "extensions": {"EXT_lights_area": {"light": light}}}}])]
 
 
+def colour_step(material, colour):
+    return (f"base colour of {material}",
+            [replace(f"/materials/{material}/pbrMetallicRoughness/baseColorFactor", colour)])
+
+
 def material_steps(material, colour, roughness):
     """roughness: another one in the bucket of what the material has, or None, and one outside."""
     at = f"/materials/{material}/pbrMetallicRoughness"
-    steps = [(f"base colour of {material}", [replace(f"{at}/baseColorFactor", colour)])]
+    steps = [colour_step(material, colour)]
     if roughness[0] is not None:
         steps.append((f"roughness of {material} in its bucket", [replace(f"{at}/roughnessFactor", roughness[0])]))
     steps.append((f"roughness of {material} outside", [replace(f"{at}/roughnessFactor", roughness[1])]))
@@ -108,6 +113,7 @@ def toycar(assets, folder):
     steps = light_steps("Key", key, ("/size", 0.03))
     steps += material_steps("Fabric", [0.9, 0.4, 0.3, 1.0], (0.95, 0.4))
     steps += material_steps("ToyCar", [0.6, 0.9, 0.6, 1.0], (None, 0.5))
+    steps.append(colour_step("Glass", [0.8, 0.3, 0.3, 1.0]))
     steps.append(("toy car moved", [replace("/nodes/ToyCar/translation", [0.001, 0, 0])]))
     write(folder, "toycar", document, steps)
 
@@ -127,11 +133,17 @@ def garden(folder):
     document = open_copy(os.path.join(PROJECT, "build", "scenes", "garden", "garden.gltf"), folder)
     hdri = os.path.join(PROJECT, "build", "scenes", "product", "hdri")
     add_environment(document, folder, [("Sky", f"{hdri}/sky.hdr"), ("Other", f"{hdri}/dusk.hdr")], 1.0)
+    for material in document["materials"]:
+        if material["name"] == "LeavesFurthest":  # lets light through, so that its colours tint it
+            material.update({"alphaMode": "BLEND", "doubleSided": True})
+            material["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.75
     key = (3.0, 4.0, 3.0)
     add_light(document, "Key", {"type": "disk", "intensity": 20.0, "size": 1.0}, key, (0, 0, 0))
     steps = light_steps("Key", key, ("/size", 0.6))
     steps += material_steps("Marble", [0.9, 0.4, 0.3, 1.0], (None, 0.3))
     steps += material_steps("Ground", [0.9, 0.4, 0.3, 1.0], (None, 0.3))
+    steps.append(colour_step("Glass", [0.8, 0.95, 0.9, 1.0]))
+    steps.append(colour_step("LeavesFurthest", [0.5, 0.2, 0.05, 0.75]))
     steps.append(("cow moved", [replace("/nodes/CowFar/translation", [3.0, 0.0, -4.4])]))
     write(folder, "garden", document, steps)
 

@@ -176,6 +176,7 @@ TEST(Report, has_every_name_of_version_1) {
                            "shadow_updates",
                            "object_rays",
                            "color_trees_evaluated",
+                           "color_trees_reused",
                            "seconds",
                            "resident",
                            "evicted",
@@ -187,7 +188,8 @@ TEST(Report, has_every_name_of_version_1) {
   for (const char* name : {"classify", "select", "test", "update", "evaluate", "write", "total"})
     EXPECT_TRUE(step["seconds"].contains(name)) << name;
   for (const char* name :
-       {"ray_paths", "ray_trees", "sample_colors", "light_sums", "color_trees", "groups", "tunnels", "total"})
+       {"ray_paths", "ray_trees", "sample_colors", "light_sums", "kept_rays", "kept_terms", "color_trees", "groups",
+        "tunnels", "total"})
     EXPECT_TRUE(step["resident"].contains(name)) << name;
   EXPECT_EQ(step["drag_frame"], 2);
   EXPECT_EQ(step["frame"], "frames/0003_02.exr");

@@ -16,9 +16,6 @@ struct HitColumns {
   float coverage = 0;
 };
 
-/// The columns of a surface behind its branches.
-enum class OwnColumn : std::uint32_t { emission, ambient, unlit };
-
 /// What is multiplied by coverage counts so much.
 float surface_scale(const RayNode& node) { return node.coverage.sees_surface() ? node.coverage.scale() : 0.0F; }
 
@@ -52,9 +49,10 @@ struct PathShader::Impl {
     add_light_terms();
   }
   void keep(const TreeBlock& trees, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept) {
-    TermKeeper of_terms(scene, parameters, trees, kept);
+    TermKeeper of_terms(scene, parameters, trees, samples, kept);
     TileSums none;
     shade(trees, samples, TermSign::add, none, {}, &of_terms);
+    of_terms.finish();
   }
   [[nodiscard]] std::span<const Color> found_weights() const { return weights; }
 
@@ -62,8 +60,9 @@ struct PathShader::Impl {
   [[nodiscard]] bool is_whole(const RayNode& node) const {
     return wanted.sums.empty() || (!wanted.whole.empty() && wanted.whole[node.sample] != 0);
   }
-  [[nodiscard]] bool is_wanted(std::uint32_t sum, const RayNode& node) const {
-    return is_whole(node) || wanted.sums[sum] != 0;
+  /// Of sources that are no light.
+  [[nodiscard]] bool is_wanted(std::uint32_t source, const RayNode& node) const {
+    return is_whole(node) || wanted.sums[places.sum_of[source]] != 0;
   }
   [[nodiscard]] bool is_light_wanted(std::uint32_t place, const RayNode& node) const {
     return is_whole(node) || wanted.lights[place] != 0;
@@ -73,36 +72,32 @@ struct PathShader::Impl {
     return reaches(block->lights[node.first_light + place].state) && is_light_wanted(place, node);
   }
   [[nodiscard]] bool is_lit(const RayNode& node) const {
-    for (std::uint32_t place = 0; place < places.of_light.size(); ++place)
+    for (std::uint32_t place = 0; place < places.lights(); ++place)
       if (is_lit_by(place, node)) return true;
     return false;
   }
 
-  void put(std::uint32_t sum, std::uint32_t i, const Color& term) {
-    if (keeper != nullptr || is_black(term)) return;
+  /// A term: what a node has of unit light of a source.
+  void put(std::uint32_t source, std::uint32_t i, const Color& unit) {
+    if (keeper != nullptr) return;
+    const Color term = weights[i] * unit * places.colors[source];
+    if (is_black(term)) return;
     if (is_added)
-      sums->add(sum, pixel_of(i), term);
+      sums->add(places.sum_of[source], pixel_of(i), term);
     else
-      sums->subtract(sum, pixel_of(i), term);
+      sums->subtract(places.sum_of[source], pixel_of(i), term);
   }
   [[nodiscard]] std::uint32_t pixel_of(std::uint32_t i) const { return block->nodes[i].sample / samples_of_pixel; }
 
   /// What a node brings of unit light on the way to it.
-  void add(std::uint32_t sum, std::uint32_t i, const Color& unit) {
-    put(sum, i, weights[i] * unit);
-    if (keeper != nullptr) keeper->add(i, sum, pixel_of(i), unit);
-  }
-  /// The same of the light at `place`.
-  void add_light(std::uint32_t place, std::uint32_t i, const Color& unit) {
-    put(places.of_light[place], i, weights[i] * unit * places.colors[place]);
-    if (keeper != nullptr) keeper->add(i, places.of_light[place], pixel_of(i), unit);
+  void add(std::uint32_t source, std::uint32_t i, const Color& unit) {
+    put(source, i, unit);
+    if (keeper != nullptr) keeper->add(i, source, unit);
   }
   /// What a hit brings itself: a column of its surface, times `factor`.
-  void add_own(std::uint32_t sum, std::uint32_t i, OwnColumn column, const Color& value, const Color& factor,
-               const Color& color = {1, 1, 1}) {
-    const Color unit = value * factor;
-    put(sum, i, weights[i] * unit * color);
-    if (keeper != nullptr) keeper->add_own(i, sum, pixel_of(i), static_cast<std::uint32_t>(column), factor, unit);
+  void add_own(std::uint32_t source, std::uint32_t i, OwnColumn column, const Color& value, const Color& factor) {
+    put(source, i, value * factor);
+    if (keeper != nullptr) keeper->add_own(i, source, column, factor, value * factor);
   }
   /// Does a node's light come to the eye, now or with other values of what is above?
   [[nodiscard]] bool counts(std::uint32_t i) const {
@@ -187,8 +182,7 @@ struct PathShader::Impl {
         open_shares[i] = open_shares[node.parent] * (1.0F - columns[node.parent].coverage);
     }
     if (keeper == nullptr) return;
-    keeper->begin(steps, weights);
-    keeper->keep_columns(runner);
+    keeper->begin(steps, weights, tints, runner);
   }
 
   /// What a program yields for lights, from its output `first` on.
@@ -206,7 +200,7 @@ struct PathShader::Impl {
   void add_own_terms() {
     for (std::uint32_t i = 0; i < block->nodes.size(); ++i) {
       const RayNode& node = block->nodes[i];
-      if (keeper == nullptr && is_whole(node) && !node.object.is_none() && open_shares[i] > 0) add_coverage(node, i);
+      if (is_whole(node) && !node.object.is_none()) add_coverage(i);
       if (!counts(i)) continue;
       for (const std::uint32_t place : shapes) add_crossed(node, i, place);
       if (node.object.is_none())
@@ -216,19 +210,22 @@ struct PathShader::Impl {
     }
   }
 
-  void add_coverage(const RayNode& node, std::uint32_t i) {
+  void add_coverage(std::uint32_t i) {
     const float coverage = open_shares[i] * columns[i].coverage;
-    const std::uint32_t pixel = node.sample / samples_of_pixel;
-    if (is_added)
-      sums->add_coverage(pixel, coverage);
+    if (keeper != nullptr)
+      keeper->add_coverage(i, open_shares[i], columns[i].coverage);
+    else if (!(open_shares[i] > 0))
+      return;
+    else if (is_added)
+      sums->add_coverage(pixel_of(i), coverage);
     else
-      sums->subtract_coverage(pixel, coverage);
+      sums->subtract_coverage(pixel_of(i), coverage);
   }
 
   void add_crossed(const RayNode& node, std::uint32_t i, std::uint32_t place) {
     const Light& light = scene.scene().light(scene.light_order()[place]);
     if (!is_light_wanted(place, node) || !may_meet(node, scene.light(place), light)) return;
-    if (const auto radiance = crossed(node, scene.light(place), light)) add_light(place, i, Color(*radiance));
+    if (const auto radiance = crossed(node, scene.light(place), light)) add(place, i, Color(*radiance));
   }
 
   /// Of a ray that leaves the scene.
@@ -246,7 +243,7 @@ struct PathShader::Impl {
     if (is_black(parts.suns) || !is_light_wanted(suns, node)) return;
     if (!may_meet(node, light, scene.scene().light(scene.light_order()[suns]))) return;
     const float weight = path.density > 0 ? met_weight(node, light, scene.environment()->density(way)) : 1.0F;
-    add_light(suns, i, parts.suns * weight);
+    add(suns, i, parts.suns * weight);
   }
 
   /// Radiance for unit tint.
@@ -277,8 +274,7 @@ struct PathShader::Impl {
     if (path.density > 0)
       weight = met_weight(node, source, source.emission->density(node.object, node.hit.primitive, node.ray.origin,
                                                                  node.ray.direction, node.length));
-    add_own(places.of_light[place], i, OwnColumn::emission, own.emission, shown(light.emission, node) * weight,
-            places.colors[place]);
+    add_own(place, i, OwnColumn::emission, own.emission, shown(light.emission, node) * weight);
   }
 
   /// The image of an emitting surface: as sharp as its light's samples see it, but to the eye.
@@ -297,7 +293,7 @@ struct PathShader::Impl {
       const RayNode& node = block->nodes[i];
       if (node.object.is_none() || !counts(i)) continue;
       std::uint32_t program = kNoNode;
-      for (std::uint32_t place = 0; place < places.of_light.size(); ++place) {
+      for (std::uint32_t place = 0; place < places.lights(); ++place) {
         if (!is_lit_by(place, node)) continue;
         auto term = light_term(scene, *block, i, place);
         if (!term) continue;
@@ -311,40 +307,14 @@ struct PathShader::Impl {
     runner.run(*block, false, terms, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
         const LightTerm& term = terms[chosen[lane]];
-        const Color unit = tinted(from_lanes(kernel, 0, lane), link_of(term)) * surface_scale(block->nodes[term.node]);
-        put(places.of_light[term.light], term.node, weights[term.node] * unit * places.colors[term.light]);
-        if (keeper != nullptr && !keeper->is_source(term.node))
-          keeper->add(term.node, places.of_light[term.light], pixel_of(term.node), unit);
+        const Color value = from_lanes(kernel, 0, lane);
+        const LightLink& link = block->lights[block->nodes[term.node].first_light + term.light];
+        const Color unit = tinted(value, link) * surface_scale(block->nodes[term.node]);
+        put(term.light, term.node, unit);
+        if (keeper != nullptr && !keeper->is_source(term.node)) keeper->add_lit(term, value, unit);
       }
     });
-    if (keeper != nullptr) keep_lit_terms();
-  }
-  [[nodiscard]] const LightLink& link_of(const LightTerm& term) const {
-    return block->lights[block->nodes[term.node].first_light + term.light];
-  }
-
-  /// Those at hits whose material changes. The list of terms is at hand yet.
-  void keep_lit_terms() {
-    std::vector<LightTerm> of_sources;
-    runner.begin();
-    for (const LightTerm& term : terms) {
-      if (!keeper->is_source(term.node)) continue;
-      const RayNode& node = block->nodes[term.node];
-      of_sources.push_back(term);
-      runner.add(term.node, runner.number_of(runner.key_of(PathPiece::light, node.object, node.point.inside)));
-    }
-    runner.for_each_batch(*block, false, of_sources,
-                          [&](std::uint32_t number, const PathBatch& batch, std::span<const std::uint32_t> chosen) {
-                            std::vector<TermPlace> term_places;
-                            std::vector<const LightLink*> links;
-                            for (const std::uint32_t k : chosen) {
-                              const LightTerm& term = of_sources[k];
-                              term_places.push_back(
-                                  keeper->place_of(term.node, places.of_light[term.light], pixel_of(term.node)));
-                              links.push_back(&link_of(term));
-                            }
-                            keeper->add_lit(number, batch, term_places, links, tints, runner);
-                          });
+    if (keeper != nullptr) keeper->add_lit_sources(terms, runner);
   }
 
   [[nodiscard]] Color tinted(Color light, const LightLink& link) const {

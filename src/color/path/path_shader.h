@@ -30,8 +30,7 @@ class PathShader {
   /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel.
   void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums, const Wanted& wanted = {});
   /// Fills `kept`, which is empty, with the terms of a block that an edit of some parameters changes, in place of adding
-  /// any. Requires: no lights share a sum; the parameters are of materials that are opaque and cast no tints, no fields of
-  /// kMappingMask among them.
+  /// any. Requires: the parameters are of materials, no fields of kMappingMask among them.
   void keep(const TreeBlock& block, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept);
   /// By node of the block that was shaded, or kept, last: what of unit light there comes to the eye.
   [[nodiscard]] std::span<const Color> weights() const;

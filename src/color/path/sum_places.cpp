@@ -14,31 +14,35 @@ Color color_of_terms(const Light& light) {
 }  // namespace
 
 SumPlaces::SumPlaces(const Scene& scene, std::span<const LightSum> sums)
-    : of_light(scene.light_order.size()),
-      shares(scene.light_order.size(), 0),
-      colors(scene.light_order.size(), Color(1, 1, 1)),
+    : sum_of(scene.light_order.size() + 4),
+      colors(sum_of.size(), Color(1, 1, 1)),
+      sky(static_cast<std::uint32_t>(scene.light_order.size())),
+      ambient(sky + 1),
+      background(sky + 2),
+      unlit(sky + 3),
+      shares(lights(), 0),
       count(sums.size()) {
   for (std::uint32_t place = 0; place < sums.size(); ++place) {
     switch (sums[place].kind) {
       case LightSum::Kind::light: {
         const auto light = std::ranges::find(scene.light_order, sums[place].light);
-        of_light[static_cast<std::size_t>(light - scene.light_order.begin())] = place;
+        sum_of[static_cast<std::size_t>(light - scene.light_order.begin())] = place;
         break;
       }
       case LightSum::Kind::shared:
         place_members(scene, sums[place].shared, place);
         break;
       case LightSum::Kind::sky:
-        sky = place;
+        sum_of[sky] = place;
         break;
       case LightSum::Kind::ambient:
-        ambient = place;
+        sum_of[ambient] = place;
         break;
       case LightSum::Kind::background:
-        background = place;
+        sum_of[background] = place;
         break;
       case LightSum::Kind::unlit:
-        unlit = place;
+        sum_of[unlit] = place;
         break;
     }
   }
@@ -48,7 +52,7 @@ void SumPlaces::place_members(const Scene& scene, const std::string& name, std::
   for (std::size_t place = 0; place < scene.light_order.size(); ++place) {
     const Light& light = scene.light(scene.light_order[place]);
     if (light.sum != name) continue;
-    of_light[place] = sum;
+    sum_of[place] = sum;
     shares[place] = 1;
     colors[place] = color_of_terms(light);
   }

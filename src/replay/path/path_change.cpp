@@ -113,9 +113,9 @@ void find_afresh(const Scene& scene, const SceneDelta& delta, PathChange& change
 
 void find_given(const Scene& scene, const std::vector<std::uint8_t>& changed, PathChange& change) {
   const SumPlaces places(scene, change.sums);
-  for (std::size_t place = 0; place < places.of_light.size(); ++place) {
+  for (std::size_t place = 0; place < places.lights(); ++place) {
     const bool is_changed = changed[scene.light_order[place].index()] != 0;
-    std::uint8_t& afresh = change.afresh[places.of_light[place]];
+    std::uint8_t& afresh = change.afresh[places.sum_of[place]];
     if (is_changed && places.shares[place] == 0) afresh = 1;
     change.given.push_back(is_changed || afresh != 0 ? 1 : 0);
   }

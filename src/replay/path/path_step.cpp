@@ -95,6 +95,7 @@ class PathSelection {
 void count(const PathTileResult& tile, Counters& counters) {
   counters.samples_affected += tile.samples;
   counters.color_trees_evaluated += tile.samples;
+  counters.color_trees_reused += tile.reused;
   counters.ray_tests += tile.counters.ray_tests;
   counters.culled += tile.counters.culled;
   counters.ray_tests_culled += tile.counters.culled.sum();
@@ -103,7 +104,7 @@ void count(const PathTileResult& tile, Counters& counters) {
   counters.object_rays += tile.counters.object_rays;
 }
 
-constexpr std::size_t kMostKeptSums = 0xFFFF;  // that TermPlace can tell
+constexpr std::size_t kMostKeptLights = 0x7000;  // whose terms at a node, met ones too, KeptTerms can count
 
 /// The boxes of what a step moves or hides, and of where that was.
 SegmentSelection segment_selection(const ChangeBoxes& boxes) {
@@ -196,21 +197,14 @@ class PathUpdate {
     return touched;
   }
 
-  /// Of an edit of the colours of opaque materials that tint no light; else none.
+  /// Of an edit of colours that leaves expressions their shape; else none.
   [[nodiscard]] std::optional<ParameterSet> term_parameters() const {
     const ColorChange& colors = change_.step.colors;
-    const SumPlaces sums(parts_.state.scene(), change_.sums);
     if (!is_compressible(colors) || !colors.restructured.empty() || change_.shaded.empty() ||
-        std::ranges::find(sums.shares, std::uint8_t{1}) != sums.shares.end() || sums.count > kMostKeptSums)
+        parts_.rays.light_order().size() > kMostKeptLights)
       return std::nullopt;
     ParameterSet parameters;
     parameters.materials = colors.parameters.materials;
-    for (std::uint32_t object = 0; object < parts_.state.scene().objects.size(); ++object) {
-      const SurfaceOptics& optics = parts_.rays.object(ObjectId(object)).optics;
-      if (parameters.fields_of(parts_.state.scene().objects[object].material) != 0 &&
-          (optics.transparent || optics.passes_light))
-        return std::nullopt;
-    }
     return parameters;
   }
   /// Is a tile traced as a whole in less time than its trees are updated? Trees of changed objects are expanded as they
@@ -314,6 +308,20 @@ StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file
   refresh_pixels(parts.stored, tiles, change.sums, result);
   watch.lap(result.seconds.evaluate);
   return result;
+}
+
+void keep_path_terms(ReplayParts& parts, const ParameterSet& parameters) {
+  const Scene& scene = parts.state.scene();
+  PathChange change = find_path_change(parts.rays, parts.stored.lights(), light_sums(scene), scene, parts.rays, {});
+  change.scene_before = std::make_shared<const Scene>(scene);
+  for (const auto& [material, fields] : parameters.materials) {
+    if ((fields & ~kMappingMask) == 0) continue;  // what is mapped otherwise is shaded anew
+    change.step.colors.parameters.materials.emplace_back(material, fields & ~kMappingMask);
+    change.shaded.push_back(material);
+  }
+  if (change.shaded.empty()) return;
+  StepResult unchanged;
+  static_cast<void>(PathUpdate(parts, change).run(unchanged));
 }
 
 }  // namespace relook

@@ -11,5 +11,7 @@ namespace relook {
 /// Applies one edit. Throws InputError with everything as before.
 [[nodiscard]] StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file,
                                    const std::filesystem::path& folder);
+/// Makes the terms that edits of these parameters of materials exchange before there is any such edit (paper 4.1.1).
+void keep_path_terms(ReplayParts& parts, const ParameterSet& parameters);
 
 }  // namespace relook

@@ -227,7 +227,7 @@ class PathTileUpdater {
       if (light.visible || !traits_of(light.kind).in_document) return false;
     }
     const SumPlaces& sums = pass_.after.places();
-    return pass_.change.afresh[sums.sky] == 0 && pass_.change.afresh[sums.background] == 0 &&
+    return pass_.change.afresh[sums.sum_of[sums.sky]] == 0 && pass_.change.afresh[sums.sum_of[sums.background]] == 0 &&
            pass_.change.step.rays.keeps_places;
   }
 
@@ -299,7 +299,8 @@ class PathTileUpdater {
     const auto memory = term_memory_of(pass_);
     KeptTerms kept;
     shader_after_->keep(changed_.block, samples_, *pass_.term_parameters, kept);
-    exchange_terms(kept, pass_.before.scene().scene(), pass_.after.scene().scene(), *memory, new_terms_);
+    exchange_terms(kept, pass_.before.scene().scene(), pass_.after.scene().scene(), pass_.after.places(), *memory,
+                   new_terms_);
     note_weights(changed_, *shader_after_);
     terms_.samples += changed_.roots.size();
     terms_.blocks.push_back(std::move(kept));
@@ -359,12 +360,12 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
   PathTileResult result;
   result.fresh.tile = tile;
   result.sums = sums;
-  result.samples = terms.samples;
+  result.samples = result.reused = terms.samples;
   if (terms.samples == 0) return result;
   TileSums all = sums.unpack();
   const auto memory = term_memory_of(pass);
   for (const KeptTerms& block : terms.blocks)
-    exchange_terms(block, pass.before.scene().scene(), pass.after.scene().scene(), *memory, all);
+    exchange_terms(block, pass.before.scene().scene(), pass.after.scene().scene(), pass.after.places(), *memory, all);
   result.sums = PackedSums::pack(all);
   result.has_changed = result.has_other_weights = true;
   return result;

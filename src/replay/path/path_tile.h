@@ -62,6 +62,7 @@ struct PathTileResult {
   PackedSums sums;                 // of the tile as it is now
   bool has_changed = false;
   std::uint64_t samples = 0;  // whose terms have been worked out
+  std::uint64_t reused = 0;   // of these, from terms that were kept
   GrowCounters counters;
 };
 
