@@ -73,6 +73,25 @@ TEST_F(KeptTermsCli, what_is_opaque_glass_or_a_leaf_is_edited_again_from_kept_te
   expect_second_edits_from_kept_terms(1);
 }
 
+TEST_F(KeptTermsCli, of_chosen_parameters_are_there_before_the_first_edit) {
+  write_text(at("j.json"), Json{{"relook", "journal/1"},
+                                {"steps", {color_of("Paint", {0.2, 0.5, 0.9, 1}), color_of("Glass", {0.9, 0.4, 0.1, 1}),
+                                           color_of("Mirror", {0.5, 0.4, 0.1, 1})}}}
+                               .dump());
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "64x40", "--samples", "2", "--quiet"}).exit_code,
+            0);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("r"), "--verify", "--quiet", "--params", "/materials/Paint",
+                    "/materials/Glass/pbrMetallicRoughness"})
+                .exit_code,
+            0);
+  const Json steps = read_json(at("r/report.json"))["steps"];
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_EQ(steps[i]["verify"]["pixels_different"], 0);
+    EXPECT_GT(steps[i]["color_trees_evaluated"], 0) << i;
+    EXPECT_EQ(steps[i]["color_trees_reused"], i < 3 ? steps[i]["color_trees_evaluated"] : Json(0)) << i;
+  }
+}
+
 TEST_F(KeptTermsCli, so_it_is_where_lights_share_a_sum) { expect_second_edits_from_kept_terms(20); }
 
 }  // namespace
