@@ -79,8 +79,6 @@ void print_paths(const std::vector<std::string>& paths, Console& console) {
 std::unique_ptr<PixelHistory> open_pixel(const RunSource& source, std::uint32_t x, std::uint32_t y) {
   OpenedCache opened = open_cache(source.cache, true);
   const Frame& frame = opened.image.frame;
-  if (opened.image.view.integrator == Integrator::path)
-    throw UsageError("blame: " + printable(source.cache) + " is of --integrator path, whose pixels have no history");
   if (opened.scene_hash != source.scene_hash) require_sound({CacheFault::other_scene, "", ""}, source.cache);
   if (x >= frame.width || y >= frame.height)
     throw UsageError("PIXEL: the image is " + std::to_string(frame.width) + "x" + std::to_string(frame.height) +

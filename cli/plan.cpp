@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "cache/manifest.h"
 #include "edit/apply.h"
 #include "input/load_cache.h"
 #include "options/outputs.h"
 #include "report/edit_hashes.h"
+#include "run/step_text.h"
 #include "verbs.h"
 
 namespace relook {
@@ -67,6 +69,8 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
                     {"cache", cache},
                     {"journal", journal.file},
                     {"samples_total", plan.samples_total},
+                    {"samples", view.samples},
+                    {"noise", content.manifest->noise ? Json(*content.manifest->noise) : Json()},
                     {"proxy", {plan.proxy_width, plan.proxy_height}},
                     {"seconds", seconds},
                     {"most_resident_bytes", most_bytes},
@@ -76,7 +80,8 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
       static_cast<std::size_t>(std::ranges::count(plan.frames, false, &PlannedFrame::is_whole_step));
   std::snprintf(total, sizeof total, "%zu frames: %.3f s without writing, at most %.1f M resident", frame_count,
                 seconds, static_cast<double>(most_bytes) / (1 << 20));
-  console.line(total);
+  console.line(total + (", " + std::to_string(view.samples)) + " samples a pixel" +
+               noise_text(content.manifest->noise));
   if (!arguments.json_file.empty()) write_file(arguments.json_file, json_text(result, 2) + "\n");
   console.json(result);
   return ExitCode::ok;

@@ -5,12 +5,15 @@
 #include "cache/cache.h"
 #include "image/cached_image.h"
 #include "image/image_pieces.h"
+#include "image/layers/half_light.h"
 #include "image/path_classes.h"
 #include "image/render.h"
 #include "input/load_cache.h"
 #include "input/load_scene.h"
 #include "options/cache_output.h"
+#include "options/needless_options.h"
 #include "options/outputs.h"
+#include "run/step_text.h"
 #include "verbs.h"
 
 namespace relook {
@@ -70,6 +73,7 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   std::optional<Interrupt::Expendable> loading(std::in_place, console.interrupt());
   LoadedScene loaded = load_scene(arguments.inputs[0], arguments.view);
   loading.reset();
+  console.warn(idle_structures_warning(arguments, arguments.view.sampling.integrator));
   console.warn(loaded.warnings);
   require_not_outputs(arguments, loaded.files, "a file of the scene");
   require_writable(arguments.output);
@@ -85,11 +89,13 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   };
   Image image = preprocess(loaded.state->scene(), arguments.view.sampling, stats, within_memory, &tunnels);
   console.end_stage();
+  const std::optional<double> share = noise(loaded.state->scene(), image.view, image.frame);
   span.emplace(console.trace(), "write cache");
   const std::size_t paths = image.paths.size();
   forget_trees(image, arguments.structures.ray_trees_percent / 100);
   CacheContent content = cache_content(*loaded.state, std::move(image), loaded.hash, std::move(tunnels));
   content.storage = storage;
+  content.noise = share;
   console.check_interrupt();
   keep_within(arguments.structures.memory_bytes);
   if (arguments.structures.disk_bytes)
@@ -102,12 +108,13 @@ ExitCode run_preprocess(const Arguments& arguments, Console& console) {
   require_sound(read_manifest(arguments.output, manifest), arguments.output);
   console.line(arguments.output + ": " + std::to_string(content.objects) + " objects, " + std::to_string(paths) +
                " ray paths, " + std::to_string(bytes_of_files(manifest)) + " bytes, " +
-               std::to_string(stats.render_seconds) + " s");
+               std::to_string(stats.render_seconds) + " s" + noise_text(share));
   Json result = summary(arguments.output, manifest);
   result.update({{"ray_paths", paths},
                  {"samples_total", stats.counters.samples_total},
                  {"ray_updates", stats.counters.ray_updates},
                  {"shadow_updates", stats.counters.shadow_updates},
+                 {"noise", share ? Json(*share) : Json()},
                  {"build_seconds", stats.build_seconds},
                  {"render_seconds", stats.render_seconds}});
   console.json(result);

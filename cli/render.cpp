@@ -9,12 +9,14 @@
 #include "edit/journal_walk.h"
 #include "frame/frame_layers.h"
 #include "frame/preview.h"
+#include "image/layers/half_light.h"
 #include "image/layers/layered_frame.h"
 #include "input/load_scene.h"
 #include "options/named_files.h"
 #include "options/outputs.h"
 #include "report/edit_hashes.h"
 #include "report/report.h"
+#include "run/step_text.h"
 #include "verbs.h"
 
 namespace relook {
@@ -92,6 +94,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   const Image image = rendered_image(arguments, loaded.state->scene(), stats, console.stage("render"));
   const Frame& frame = image.frame;
   console.end_stage();
+  const std::optional<double> share = noise(loaded.state->scene(), image.view, frame);
   span.emplace(console.trace(), "write frame");
   const Bytes bytes = encoded(arguments, *loaded.state, image, before, meta, console);
   console.check_interrupt();
@@ -105,7 +108,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
   const std::string hash = hash128(bytes);
   console.line(arguments.output + ": " + std::to_string(frame.width) + "x" + std::to_string(frame.height) + ", " +
                std::to_string(stats.counters.ray_updates) + " rays, " + std::to_string(stats.counters.shadow_updates) +
-               " shadow rays, " + std::to_string(stats.render_seconds) + " s");
+               " shadow rays, " + std::to_string(stats.render_seconds) + " s" + noise_text(share));
   console.json({{"frame", arguments.output},
                 {"hash", hash},
                 {"scene_hash", loaded.hash},
@@ -114,6 +117,7 @@ ExitCode run_render(const Arguments& arguments, Console& console) {
                 {"samples_total", stats.counters.samples_total},
                 {"ray_updates", stats.counters.ray_updates},
                 {"shadow_updates", stats.counters.shadow_updates},
+                {"noise", share ? Json(*share) : Json()},
                 {"build_seconds", stats.build_seconds},
                 {"render_seconds", stats.render_seconds}});
   return ExitCode::ok;

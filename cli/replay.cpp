@@ -121,6 +121,7 @@ void require_fitting(const Arguments& arguments, const OpenedCache& opened) {
     if (loaded.hash != opened.scene_hash) require_sound({CacheFault::other_scene, "", ""}, cache);
   }
   if (arguments.layers) require_layers(opened.state->scene());
+  if (opened.image.view.integrator == Integrator::path) return;  // it has no counters
   const std::uint32_t shadow_bits = opened.image.view.shadow_bits;
   if (arguments.shadow_bits.value_or(shadow_bits) != shadow_bits)
     throw Error(ExitCode::cache_mismatch, cache, "",
@@ -145,7 +146,7 @@ class ReplayCommand {
     for (std::string& sentence : damage) sentence = arguments.inputs[0] + ": " + sentence + "; traced again";
     console.warn(damage);
     require_fitting(arguments, opened_);
-    facts_ = {opened_.scene_hash, cache_sizes(manifest), damage, opened_.rebuilt};
+    facts_ = {opened_.scene_hash, cache_sizes(manifest), noise_of(manifest), damage, opened_.rebuilt};
     const TraceScope checking = console.span("check journals");
     for (const Journal& journal : journals) console.warn(check_journal(*opened_.state, journal));
   }
@@ -194,8 +195,7 @@ class ReplayCommand {
   CacheFacts facts_;
 };
 
-/// `manifest`: of the cache. Throws Error with exit code 3 if it is of another integrator than the command line says,
-/// UsageError if structures are asked for that its integrator has none of.
+/// `manifest`: of the cache. Throws Error with exit code 3 if it is of another integrator than the command line says.
 void require_integrator(const Json& manifest, const Arguments& arguments) {
   const std::string& cache = arguments.inputs[0];
   const Integrator integrator = integrator_of(manifest);
@@ -203,10 +203,6 @@ void require_integrator(const Json& manifest, const Arguments& arguments) {
     throw Error(ExitCode::cache_mismatch, cache, "",
                 "the cache is of --integrator " + std::string(integrator_word(integrator)) +
                     "; preprocess again with --integrator " + std::string(integrator_word(*arguments.integrator)));
-  if (integrator == Integrator::whitted) return;
-  if (const std::string option = option_of_whitted(arguments); !option.empty())
-    throw UsageError("replay " + option + ": it is for --integrator whitted, and " + printable(cache) +
-                     " is of --integrator path");
 }
 
 /// The structures of the cache, where the command line does not say otherwise; in words, what becomes of its tunnels if
@@ -224,7 +220,9 @@ void take_structures_of(const Json& manifest, Arguments& arguments, Console& con
     stored.tunnel_levels = number("tunnel_levels");
     if (!storage["most_tunnels"].is_null()) stored.most_tunnels = storage["most_tunnels"].get<std::uint64_t>();
   }
-  take_structures(stored, arguments);
+  const Integrator integrator = integrator_of(manifest);
+  console.warn(idle_structures_warning(arguments, integrator));
+  take_structures(stored, integrator, arguments);
   const StructureOptions& wanted = arguments.structures;
   const bool is_same = wanted.tunnels == stored.tunnels && wanted.tunnel_levels == stored.tunnel_levels &&
                        wanted.most_tunnels == stored.most_tunnels &&

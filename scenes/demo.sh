@@ -1,7 +1,7 @@
 #!/bin/sh
-# Builds relook and shows it twice. First a product shot under its own HDRI and area lights (the path integrator): its
-# lights soloed and mixed, each step against a full render; then scenes/spheres and one step for each row of the paper's
-# Table 1. Installs missing Debian packages first (it says which; as root or through sudo). Writes to build/ only.
+# Builds relook and shows it twice. First a product shot under its own HDRI and area lights: its lights soloed and mixed,
+# each step against a full render; then scenes/spheres and one step for each row of the paper's Table 1, under the paper's
+# own integrator. Installs missing Debian packages first (it says which; as root or through sudo). Writes to build/ only.
 set -eu
 cd "$(dirname "$0")/.."
 . scenes/setup.sh
@@ -16,11 +16,11 @@ if [ ! -e build/scenes/product/product.gltf ]; then
   echo "Writing build/scenes/product ..."
   python3 scenes/generate.py product build/scenes/product
 fi
-"$relook" preprocess build/scenes/product/product.gltf -o "$out/product.cache" --integrator path \
-  --resolution 480x270 --samples 32
+"$relook" preprocess build/scenes/product/product.gltf -o "$out/product.cache" --resolution 480x270
 "$relook" replay "$out/product.cache" journals/product-lights.json -o "$out/product" --baseline
 
-"$relook" preprocess scenes/spheres/spheres.gltf -o "$out/spheres.cache" --resolution 960x540 --samples 4
+"$relook" preprocess scenes/spheres/spheres.gltf -o "$out/spheres.cache" --integrator whitted \
+  --resolution 960x540 --samples 4
 "$relook" replay "$out/spheres.cache" journals/table1.json -o "$out/table1" --baseline --overlays
 
 echo

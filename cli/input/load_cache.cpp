@@ -39,6 +39,11 @@ Integrator integrator_of(const Json& manifest) {
                                                                                 : Integrator::whitted;
 }
 
+std::optional<double> noise_of(const Json& manifest) {
+  const auto found = manifest["content"].find("noise");
+  return found == manifest["content"].end() ? std::nullopt : std::optional(found->get<double>());
+}
+
 CacheSizes cache_sizes(const Json& manifest) {
   CacheSizes sizes;
   const Json& content = manifest["content"];

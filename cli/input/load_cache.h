@@ -1,6 +1,7 @@
 // Opening a cache for a verb: its faults become errors with their sentence and exit code.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,8 @@ void require_sound(const CacheAnswer& answer, const std::string& cache);
 /// `manifest`, here and below: of read_manifest().
 [[nodiscard]] Integrator integrator_of(const Json& manifest);
 [[nodiscard]] CacheSizes cache_sizes(const Json& manifest);
+/// Of its frame, where it is known.
+[[nodiscard]] std::optional<double> noise_of(const Json& manifest);
 /// Refuses any damage.
 [[nodiscard]] CacheContent load_cache(const std::string& cache);
 

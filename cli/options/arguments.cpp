@@ -67,11 +67,12 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   ViewOptions& sampling = arguments.view.sampling;
   if (!raw.integrator.empty())
     arguments.integrator = static_cast<Integrator>(place_of(raw.integrator, kIntegratorWords, "--integrator"));
-  // A journal is for both: path sees all that can be edited.
-  sampling.integrator =
-      arguments.integrator.value_or(arguments.verb == Verb::journal ? Integrator::path : Integrator::whitted);
-  take_structures(usual_structures(sampling.integrator), arguments);
-  sampling.shadow_bits = arguments.shadow_bits.value_or(0);
+  sampling.integrator = arguments.integrator.value_or(kUsualIntegrator);
+  sampling.samples = raw.samples.value_or(usual_samples(sampling.integrator));
+  if (!raw.lens.empty()) sampling.lens = parse_lens("--lens", raw.lens);
+  if (arguments.verb != Verb::replay)  // whose cache says
+    take_structures(usual_structures(sampling.integrator), sampling.integrator, arguments);
+  sampling.shadow_bits = sampling.integrator == Integrator::whitted ? arguments.shadow_bits.value_or(0) : 0;
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
 }
@@ -149,9 +150,10 @@ StructureOptions usual_structures(Integrator integrator) {
   return structures;
 }
 
-void take_structures(const StructureOptions& others, Arguments& arguments) {
+void take_structures(const StructureOptions& others, Integrator integrator, Arguments& arguments) {
   StructureOptions& structures = arguments.structures;
-  const NamedStructures& named = arguments.named;
+  const bool is_whitted = integrator == Integrator::whitted;
+  const NamedStructures named = is_whitted ? arguments.named : NamedStructures();
   structures.tunnels = named.tunnels.value_or(others.tunnels);
   structures.tunnel_levels = named.tunnel_levels.value_or(others.tunnel_levels);
   structures.most_tunnels = named.most_tunnels ? named.most_tunnels : others.most_tunnels;

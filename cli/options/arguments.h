@@ -38,7 +38,15 @@ struct ViewArguments {
   std::string look_patch;  // RFC 6902 file, or ""
   std::uint32_t width = 960, height = 540;
   ViewOptions sampling;
+
+  ViewArguments() { sampling.diffuse_depth = 2; }
 };
+
+/// The integrator, and the samples a pixel of either, where the command line says nothing.
+inline constexpr Integrator kUsualIntegrator = Integrator::path;
+[[nodiscard]] constexpr std::uint32_t usual_samples(Integrator integrator) {
+  return integrator == Integrator::path ? 64 : 1;
+}
 
 /// What the command line says of structures; what it does not say is the cache's.
 struct NamedStructures {
@@ -102,8 +110,9 @@ struct ParsedCommandLine {
 
 /// The structures of an integrator where nothing else is said: those of whitted that path has none of are none.
 [[nodiscard]] StructureOptions usual_structures(Integrator integrator);
-/// What the command line does not say of structures becomes that of `others`.
-void take_structures(const StructureOptions& others, Arguments& arguments);
+/// What the command line does not say of structures, or says of those that the integrator has none of, becomes that of
+/// `others`.
+void take_structures(const StructureOptions& others, Integrator integrator, Arguments& arguments);
 
 /// The command line as completions need it.
 struct OptionHelp {

@@ -9,8 +9,6 @@
 namespace relook {
 namespace {
 
-constexpr double kAll = 100;  // per cent
-
 const auto kAnyApp = [](const CLI::App*) { return true; };
 
 /// The verb that was given; `name` becomes "journal wedge", "replay".
@@ -64,8 +62,10 @@ struct Condition {
 std::vector<Condition> conditions_of_view(const ViewArguments& view) {
   const bool is_whitted = view.sampling.integrator == Integrator::whitted;
   constexpr const char* kReason = "it is for --integrator path";
-  return {{"--diffuse-depth", is_whitted, kReason}, {"--glossy-depth", is_whitted, kReason},
-          {"--transmission-depth", is_whitted, kReason}};
+  return {{"--diffuse-depth", is_whitted, kReason},
+          {"--glossy-depth", is_whitted, kReason},
+          {"--transmission-depth", is_whitted, kReason},
+          {"--lens", is_whitted, kReason}};
 }
 
 std::vector<Condition> conditions_of(const Arguments& arguments) {
@@ -115,19 +115,23 @@ void require_effects(const CLI::App& verb, const Arguments& arguments) {
   for (const Condition& condition : conditions_of(arguments))
     if (condition.is_idle && is_given(verb, condition.option))
       throw UsageError(verb.get_name() + " " + condition.option + ": " + condition.reason);
-  if (arguments.verb != Verb::preprocess || arguments.view.sampling.integrator == Integrator::whitted) return;
-  if (const std::string option = option_of_whitted(arguments); !option.empty())
-    throw UsageError(verb.get_name() + " " + option + ": it is for --integrator whitted");
 }
 
-std::string option_of_whitted(const Arguments& arguments) {
+std::vector<std::string> idle_structures_warning(const Arguments& arguments, Integrator integrator) {
+  if (integrator == Integrator::whitted) return {};
   const NamedStructures& named = arguments.named;
-  if (arguments.shadow_bits.value_or(0) > 0) return "--shadow-bits";
-  if (named.tunnels.value_or(0) > 0) return "--tunnels";
-  if (named.groups.value_or(0) > 0) return "--groups";
-  if (named.color_trees_percent.value_or(0) > 0) return "--color-trees";
-  if (arguments.structures.ray_trees_percent < kAll) return "--ray-trees";
-  return arguments.structures.params.empty() ? "" : "--params";
+  std::string options;
+  const auto note = [&](const char* option, bool is_asked_for) {
+    if (is_asked_for) options += (options.empty() ? "" : ", ") + std::string(option);
+  };
+  note("--shadow-bits", arguments.shadow_bits.value_or(0) > 0);
+  note("--tunnels", named.tunnels.value_or(0) > 0);
+  note("--groups", named.groups.value_or(0) > 0);
+  note("--atoms", named.atoms.value_or(0) > 0);
+  note("--color-trees", named.color_trees_percent.value_or(0) > 0);
+  note("--params", !arguments.structures.params.empty());
+  if (options.empty()) return {};
+  return {options + ": of --integrator whitted alone; images of path keep rays and terms of light in their place"};
 }
 
 }  // namespace relook

@@ -64,6 +64,15 @@ std::pair<std::uint32_t, std::uint32_t> parse_pixel(std::string_view option, std
   refuse(option, text, "a pixel like 120,45");
 }
 
+Lens parse_lens(std::string_view option, std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon != std::string_view::npos) {
+    const auto radius = whole_number<float>(text.substr(0, colon)), focus = whole_number<float>(text.substr(colon + 1));
+    if (radius && focus && is_lens({*radius, *focus})) return {*radius, *focus};
+  }
+  refuse(option, text, "a lens like 0.02:3, its radius and where it is sharp, in metres");
+}
+
 double parse_percent(std::string_view option, std::string_view text, bool zero_allowed) {
   std::string_view number = text;
   if (number.ends_with('%')) number.remove_suffix(1);

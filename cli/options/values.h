@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "report/report.h"
+#include "scene/camera.h"
 
 namespace relook {
 
@@ -16,6 +17,8 @@ namespace relook {
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_resolution(std::string_view option, std::string_view text);
 /// "120,45": a pixel, column and row.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_pixel(std::string_view option, std::string_view text);
+/// "0.02:3": radius and distance of focus in metres, 1e-9..1e9 each.
+[[nodiscard]] Lens parse_lens(std::string_view option, std::string_view text);
 /// "50" or "50%": 0 < value <= 100 or, with `zero_allowed`, 0 <= value <= 100.
 [[nodiscard]] double parse_percent(std::string_view option, std::string_view text, bool zero_allowed);
 

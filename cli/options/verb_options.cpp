@@ -60,16 +60,21 @@ std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, R
   verb.add_option("--camera", view.camera, "NAME, auto, or EYE:TARGET:FOV as x,y,z:x,y,z:degrees");
   add_lights(verb, raw);
   verb.add_option("--resolution", raw.resolution, "WxH in pixels; 960x540");
-  verb.add_option("--samples", view.sampling.samples, "Samples per pixel; 1")->check(CLI::Range(1, 4096));
+  verb.add_option("--samples", raw.samples, "Samples per pixel; 64, of whitted 1")->check(CLI::Range(1, 4096));
   verb.add_option("--max-depth", view.sampling.max_depth, "Generations of rays; 6")->check(CLI::Range(1, 16));
-  add_integrator(verb, raw, "whitted: lamps without size, sharp shadows; path: every light, soft shadows; whitted");
-  verb.add_option("--diffuse-depth", view.sampling.diffuse_depth, "Of path: bounces off diffuse surfaces, 0: they are lit by lights alone; 0")
+  add_integrator(
+      verb, raw,
+      "path: every light, soft shadows, gloss; whitted: lamps without size, sharp shadows and mirrors; path");
+  verb.add_option("--diffuse-depth", view.sampling.diffuse_depth,
+                  "Of path: bounces off diffuse surfaces, 0: they are lit by lights alone; 2")
       ->check(CLI::Range(0, 16));
   verb.add_option("--glossy-depth", view.sampling.glossy_depth, "Of path: bounces off glossy surfaces; 4")
       ->check(CLI::Range(0, 16));
   verb.add_option("--transmission-depth", view.sampling.transmission_depth,
                   "Of path: passages through transmissive surfaces, rough or not; 16")
       ->check(CLI::Range(0, 16));
+  verb.add_option("--lens", raw.lens, "Of path: RADIUS:FOCUS in metres: what is not FOCUS away is blurred")
+      ->type_name("RADIUS:FOCUS");
   const std::vector<CLI::Option*> options = verb.get_options();
   return {options.begin() + before, options.end()};
 }

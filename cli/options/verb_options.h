@@ -2,6 +2,7 @@
 // the arguments; those that have a syntax of our own are texts until the whole line is read (arguments.cpp).
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,7 +15,8 @@ namespace relook {
 struct RawTexts {
   std::string report = "html";
   std::string resolution, memory, import_memory, disk, ray_trees, color_trees, verify, lights, progress = "auto";
-  std::string integrator;
+  std::string integrator, lens;
+  std::optional<std::uint32_t> samples;
   std::string json;  // compare, plan; "-": to stdout
   std::optional<std::string> steps;
   std::vector<const CLI::Option*> inspection_view;  // VIEW of inspect

@@ -77,6 +77,7 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
   report_.step_range = arguments.steps;
   report_.threads = thread_count();
   report_.cache = cache.sizes;
+  report_.noise = cache.noise;
   report_.cache_damage = cache.damage;
   rebuilt_ = cache.rebuilt;
 }

@@ -23,6 +23,7 @@ namespace relook {
 struct CacheFacts {
   std::string scene_hash;
   CacheSizes sizes;
+  std::optional<double> noise;
   std::vector<std::string> damage;
   Moves rebuilt;  // what was damaged
 };

@@ -98,9 +98,10 @@ void RunFolder::write_frame(StepReport& step, Replayer& replayer, const FrameCha
   step.preview = preview_name(step.place);
   std::optional<Bytes> layered;
   if (has_layers)
-    layered = encode_layered_exr({replayer.state().scene(), image.view, frame, change.pixels, style_.format,
-                                  &image.light_sums, &replayer.residency()},
-                                 meta);
+    layered = encode_layered_exr(
+        {replayer.state().scene(), image.view, frame, change.pixels, style_.format, &image.light_sums,
+         &replayer.residency(), &replayer.sum_versions(), replayer.residency().is_limited() ? nullptr : &halves_},
+        meta);
   // Not before: what has thrown until here is no reason to forget finished frames.
   std::vector<StepReport> ready = std::exchange(notes_, {});
   ++own_frames_;

@@ -12,6 +12,7 @@
 #include "edit/journal.h"
 #include "frame/frame_file.h"
 #include "frame/preview.h"
+#include "image/layers/half_light.h"
 #include "replay/replay.h"
 #include "report/progress_file.h"
 #include "report/report.h"
@@ -72,6 +73,7 @@ class RunFolder {
   std::string command_;  // tells the entries of this command from others
   FrameEncoder encoder_;
   PreviewEncoder preview_encoder_;
+  KeptHalves halves_;         // of frames with layers
   bool has_written_ = false;  // the encoders have a frame
   bool preview_is_stale_ = true;
   Bytes preview_;  // of the last frame

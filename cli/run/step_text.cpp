@@ -22,6 +22,13 @@ std::string line_of(const StepReport& entry) {
   return line;
 }
 
+std::string noise_text(const std::optional<double>& noise) {
+  if (!noise) return "";
+  char text[48];
+  std::snprintf(text, sizeof text, ", noise %.2g %%", 100 * *noise);
+  return text;
+}
+
 void trace_step(const StepReport& step, std::chrono::steady_clock::time_point start, TraceFile& trace) {
   const Seconds& seconds = step.seconds;
   const Counters& counters = step.counters;

@@ -56,6 +56,7 @@ struct CacheContent {
   std::string scene_hash;                 // XXH3-128 over the scene file's bytes and the look patch
   std::uint32_t objects = 0, lights = 0;  // of the compiled scene: all slots; living lights
   std::uint32_t shared = 0;               // of path: how many more lights than sums of lights (scene/light_sums.h)
+  std::optional<double> noise;            // of the frame (image/layers/half_light.h), where it is known
   Image image;                            // seen by `camera`; its paths are laid out for `lights`
   std::vector<Sections> around_tiles;     // [tiles] around all tunnels of each; empty: there are no tunnels
   std::vector<TileTunnels> tunnels;       // [tiles] an empty one: left out; with `around_tiles`

@@ -123,6 +123,16 @@ void add_integrator(Json& json, const ViewOptions& view) {
   json["diffuse_depth"] = view.diffuse_depth;
   json["glossy_depth"] = view.glossy_depth;
   json["transmission_depth"] = view.transmission_depth;
+  if (view.lens.radius > 0) json["lens"] = {view.lens.radius, view.lens.focus};
+}
+
+Lens read_lens(const JsonView& view) {
+  view.require_array();
+  if (view.size() != 2) view.fail("not a lens");
+  const auto metres = [&](std::size_t i) { return static_cast<float>(view.at(i).number(0, 2 * kMostLens)); };
+  const Lens lens{metres(0), metres(1)};
+  if (!is_lens(lens)) view.fail("not a lens");
+  return lens;
 }
 
 void read_integrator(const JsonView& content, ViewOptions& view) {
@@ -134,6 +144,7 @@ void read_integrator(const JsonView& content, ViewOptions& view) {
   view.diffuse_depth = static_cast<std::uint32_t>(content.at("diffuse_depth").integer(0, kMostDepth));
   view.glossy_depth = static_cast<std::uint32_t>(content.at("glossy_depth").integer(0, kMostDepth));
   view.transmission_depth = static_cast<std::uint32_t>(content.at("transmission_depth").integer(0, kMostDepth));
+  if (content.has("lens")) view.lens = read_lens(content.at("lens"));
 }
 
 Json content_json(const Manifest& manifest) {
@@ -154,6 +165,7 @@ Json content_json(const Manifest& manifest) {
                {"files", std::move(files)}};
   add_integrator(content, manifest.view);
   if (manifest.shared > 0) content["shared"] = manifest.shared;
+  if (manifest.noise) content["noise"] = *manifest.noise;
   return content;
 }
 
@@ -176,6 +188,7 @@ Manifest read_content(const JsonView& view) {
   manifest.lights = static_cast<std::uint32_t>(view.at("lights").integer(0, kMostEntities));
   if (view.has("shared"))
     manifest.shared = static_cast<std::uint32_t>(view.at("shared").integer(1, std::int64_t{manifest.lights} - 1));
+  if (view.has("noise")) manifest.noise = view.at("noise").number(0, std::numeric_limits<double>::max());
   const JsonView files = view.at("files");
   files.require_array();
   if (files.size() > kMostFiles) files.fail("too many files");
@@ -292,6 +305,7 @@ Manifest manifest_of(const CacheContent& content) {
   manifest.objects = content.objects;
   manifest.lights = content.lights;
   manifest.shared = content.shared;
+  manifest.noise = content.noise;
   manifest.pieces = content.pieces;
   return manifest;
 }

@@ -29,6 +29,7 @@ struct Manifest {
   Camera camera;
   ViewOptions view;
   std::uint32_t objects = 0, lights = 0, shared = 0;
+  std::optional<double> noise;   // as CacheContent has it
   std::vector<CacheFile> files;  // by name
 };
 

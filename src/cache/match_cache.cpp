@@ -17,6 +17,10 @@ std::string number(double value) {
   return text.str();
 }
 
+std::string lens_text(const Lens& lens) {
+  return lens.radius > 0 ? number(lens.radius) + ":" + number(lens.focus) : "none";
+}
+
 /// The same camera, whatever the resolution, on which its extent depends, too.
 bool same_view(const Camera& a, const Camera& b) {
   const bool same_size = a.width == b.width && a.height == b.height;
@@ -57,6 +61,7 @@ CacheAnswer other_content(const Manifest& there, const Manifest& wanted) {
     compare(view.glossy_depth == other_view.glossy_depth, "--glossy-depth", std::to_string(view.glossy_depth));
     compare(view.transmission_depth == other_view.transmission_depth, "--transmission-depth",
             std::to_string(view.transmission_depth));
+    compare(view.lens == other_view.lens, "--lens", lens_text(view.lens));
   }
   compare(storage.ray_trees_percent == wanted.storage.ray_trees_percent, "--ray-trees",
           number(storage.ray_trees_percent));

@@ -81,7 +81,7 @@ FrameLayers::FrameLayers(const Scene& scene, std::uint32_t samples, PixelFormat 
   }
   parts = {of_aspect(Aspect::albedo), of_aspect(Aspect::normal)};
   if (scene.integrator == Integrator::path) {
-    add_lights(scene);
+    add_lights(scene, samples);
     return;
   }
   add_sum("relook:lights", parts_by_light(scene), "lights_rest");
@@ -92,7 +92,7 @@ void FrameLayers::add_color(const std::string& layer) {
   for (const char* name : {".R", ".G", ".B"}) channels.push_back({layer + name, PixelFormat::float32});
 }
 
-void FrameLayers::add_lights(const Scene& scene) {
+void FrameLayers::add_lights(const Scene& scene, std::uint32_t samples) {
   light_column = channels.size();
   std::string names;
   for (const LightSum& sum : light_sums(scene)) {
@@ -101,6 +101,9 @@ void FrameLayers::add_lights(const Scene& scene) {
     names += (names.empty() ? "" : " ") + sum.name;
   }
   attributes.emplace_back("relook:lights", names);
+  if (samples < 2) return;
+  variance_column = channels.size();
+  add_color("variance");
 }
 
 void FrameLayers::add_sum(const char* attribute, const NamedParts& layers, const std::string& rest) {

@@ -5,6 +5,7 @@
 // Under Integrator::whitted it is a list of parts, and its last layer, the rest, is there for that: what rounding
 // leaves between the others and the frame in the file. A frame of Integrator::path is such a sum: a layer a light.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,13 +48,14 @@ struct FrameLayers {
   std::vector<LayerSum> sums;              // of whitted
   std::vector<LightColor> light_colors;    // of path: by light_sums(), whose layers have the columns
   std::size_t light_column = 0;            // from this one on, three a light
+  std::optional<std::size_t> variance_column;  // of path, from two samples a pixel on: three
   Cryptomatte objects, materials;
   std::size_t object_column = 0, material_column = 0;
 
  private:
   void add_sum(const char* attribute, const std::vector<std::pair<std::string, LayerPart>>& layers,
                const std::string& rest);
-  void add_lights(const Scene& scene);
+  void add_lights(const Scene& scene, std::uint32_t samples);
   void add_color(const std::string& layer);
 };
 

@@ -7,6 +7,7 @@
 #include "base/math.h"
 #include "frame/frame.h"
 #include "frame/light_sums.h"
+#include "scene/camera.h"
 #include "scene/integrator.h"
 #include "trace/tree/ray_path.h"
 #include "trace/tree/ray_tree.h"
@@ -22,6 +23,7 @@ struct ViewOptions {
   // Of paths alone, 0..32: bounces off diffuse surfaces (0: direct light only), off glossy ones, and through what
   // transmits.
   std::uint32_t diffuse_depth = 0, glossy_depth = 4, transmission_depth = 16;
+  Lens lens{};  // likewise
   bool operator==(const ViewOptions&) const = default;
 };
 

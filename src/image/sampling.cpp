@@ -1,6 +1,9 @@
 #include "image/sampling.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "physics/cosine_sample.h"
 
 namespace relook {
 namespace {
@@ -19,17 +22,31 @@ Uv position_in_pixel(std::uint32_t k, std::uint32_t n) {
   return Uv(of(k, n), std::min(reversed + 0.5F / static_cast<float>(n), 0.999F));
 }
 
+/// The ray of the same place in the image through another place of the lens.
+CameraRay through_lens(const Camera& camera, const Lens& lens, const CameraRay& ray, const Uv& on_lens) {
+  const DiscPlace at(on_lens);
+  const float across = lens.radius * at.radius;
+  const Direction aside =
+      camera.right * (across * portable_cos_turns(at.turns)) + camera.up * (across * portable_sin_turns(at.turns));
+  const Direction way = ray.direction * (lens.focus / ray.direction.dot(camera.forward)) - aside;
+  const float scale = 1.0F / std::sqrt(way.dot(way));
+  const Direction direction = way * scale;
+  const float slant = 1.0F / direction.dot(camera.forward);
+  return {ray.origin + aside, direction, ray.spread, ray.width, camera.near * slant, camera.far * slant};
+}
+
 }  // namespace
 
 PrimaryRays::PrimaryRays(const Camera& camera, const ViewOptions& view)
-    : camera_(camera), is_path_(view.integrator == Integrator::path) {
+    : camera_(camera), lens_(view.lens), is_path_(view.integrator == Integrator::path) {
   for (std::uint32_t k = 0; k < view.samples; ++k) in_pixel_.push_back(position_in_pixel(k, view.samples));
 }
 
 SpawnedRay PrimaryRays::through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const {
   const SampleKey key{pixel_key(x, y), k};
   const Uv place = is_path_ ? sample_point(key, 0, Purpose::pixel) : in_pixel_[k];
-  const CameraRay ray = camera_ray(camera_, static_cast<float>(x) + place.x, static_cast<float>(y) + place.y);
+  CameraRay ray = camera_ray(camera_, static_cast<float>(x) + place.x, static_cast<float>(y) + place.y);
+  if (lens_.radius > 0) ray = through_lens(camera_, lens_, ray, sample_point(key, 0, Purpose::lens));
   SpawnedRay primary{ray.origin, ray.direction, ray.width, ray.spread};
   if (is_path_) primary.path.key = key;
   primary.start = ray.start;

@@ -55,6 +55,7 @@ class PrimaryRays {
   [[nodiscard]] SpawnedRay through(std::uint32_t x, std::uint32_t y, std::uint32_t k) const;
 
   const Camera& camera_;
+  Lens lens_;
   bool is_path_;
   std::vector<Uv> in_pixel_;  // positions of a pixel's samples, in [0, 1)
 };

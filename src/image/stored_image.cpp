@@ -44,6 +44,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
     : image_(std::move(image)),
       layers_(image_.light_sums.size()),
       has_been_composed_(image_.light_sums.size(), 0),
+      sum_versions_(image_.light_sums.size(), 1),
       kept_rays_(image_.light_sums.size()),
       kept_terms_(image_.light_sums.size()),
       residency_(residency),

@@ -86,6 +86,8 @@ class StoredImage {
 
   /// Of the path integrator (stored_sums.cpp). Tiles may be done at the same time.
   void keep_sums(std::size_t tile, PackedSums sums);
+  /// By tile: how often its sums have become others, and one.
+  [[nodiscard]] const std::vector<std::uint32_t>& sum_versions() const { return sum_versions_; }
   /// Works the pixels of a tile out from its sums, adds those that differ to `changed`. `colors`: of all sums. Keeps the
   /// tile's layers from the second time on, if they are worth their room.
   void refresh_from_sums(std::size_t tile, std::span<const LightColor> colors, TileMask& changed);
@@ -128,6 +130,7 @@ class StoredImage {
   };
   std::vector<TileLayers> layers_;              // by tile; of paths
   std::vector<std::uint8_t> has_been_composed_;  // by tile: from the sums as they are
+  std::vector<std::uint32_t> sum_versions_;      // by tile, from 1 on: of the samples behind its sums
   Pool<LayerWork> layer_work_;
   std::vector<TileRays> kept_rays_;              // by tile; of paths
   std::vector<TileTerms> kept_terms_;            // likewise

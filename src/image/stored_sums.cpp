@@ -63,6 +63,7 @@ void StoredImage::keep_terms(std::size_t tile, TileTerms terms) {
 void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {
   const auto lease = residency_.use(PieceKind::light_sums, tile);
   image_.light_sums[tile] = std::move(sums);
+  ++sum_versions_[tile];
   note_sums(residency_, tile, image_.light_sums[tile]);
   has_been_composed_[tile] = 0;
   if (residency_.is_watched())

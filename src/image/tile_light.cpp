@@ -29,10 +29,13 @@ void TilePrograms::set_pixels(const TileRect& rect, const TileLight& light, std:
   std::uint32_t pixel = 0;
   for (std::uint32_t y = rect.y0; y < rect.y1; ++y) {
     Rgba* row = &frame.pixels[std::size_t{y} * frame.width];
-    for (std::uint32_t x = rect.x0; x < rect.x1; ++x, ++pixel)
-      row[x] = is_path() ? compose(light.sums, pixel, colors_, samples)
-                         : pixel_color(&light.colors[std::size_t{pixel} * samples], samples);
+    for (std::uint32_t x = rect.x0; x < rect.x1; ++x, ++pixel) row[x] = this->pixel(light, pixel, samples);
   }
+}
+
+Rgba TilePrograms::pixel(const TileLight& light, std::size_t pixel, std::uint32_t samples) const {
+  return is_path() ? compose(light.sums, pixel, colors_, samples)
+                   : pixel_color(&light.colors[pixel * samples], samples);
 }
 
 TileShading::TileShading(const TilePrograms& programs, std::uint32_t samples)

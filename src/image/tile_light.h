@@ -35,7 +35,9 @@ class TilePrograms {
   [[nodiscard]] const SumPlaces& places() const { return places_; }
   [[nodiscard]] ProgramTable& whitted() const { return whitted_; }
   [[nodiscard]] PathPrograms& path() const { return path_; }
-  /// The pixels of a tile.
+  /// A pixel of a tile, by its number.
+  [[nodiscard]] Rgba pixel(const TileLight& light, std::size_t pixel, std::uint32_t samples) const;
+  /// All of them.
   void set_pixels(const TileRect& rect, const TileLight& light, std::uint32_t samples, Frame& frame) const;
 
  private:

@@ -165,6 +165,7 @@ Replayer::~Replayer() = default;
 Replayer::Replayer(Replayer&&) noexcept = default;
 
 const SceneState& Replayer::state() const { return impl_->parts.state; }
+const std::vector<std::uint32_t>& Replayer::sum_versions() const { return impl_->parts.stored.sum_versions(); }
 const Image& Replayer::image() const { return impl_->parts.image(); }
 const ImageRegions& Replayer::regions() const { return impl_->parts.stored.regions(); }
 const Residency& Replayer::residency() const { return impl_->parts.residency; }

@@ -29,6 +29,8 @@ class Replayer {
 
   [[nodiscard]] const SceneState& state() const;
   [[nodiscard]] const Image& image() const;
+  /// As StoredImage has them.
+  [[nodiscard]] const std::vector<std::uint32_t>& sum_versions() const;
   [[nodiscard]] Resident resident() const;
   /// Number of stored segments: rays and shadow segments of all ray trees.
   [[nodiscard]] std::uint64_t segments() const;

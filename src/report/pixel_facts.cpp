@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <ranges>
 
 namespace relook {
 namespace {
 
 constexpr std::array<const char*, kBranches + 1> kBranchNames{
-    "reflection",         "coat",   "refraction", "transparency", "refraction of red", "refraction of green",
-    "refraction of blue", "primary"};
+    "reflection",         "coat",    "refraction", "transparency", "refraction of red", "refraction of green",
+    "refraction of blue", "diffuse", "primary"};
+constexpr std::size_t kMostPaths = 8;  // that are printed
 
 std::string material_name(const Scene& scene, ObjectId id) {
   const std::string& name = scene.material(scene.object(id).material).name;
@@ -17,31 +20,43 @@ std::string material_name(const Scene& scene, ObjectId id) {
 
 class Collector {
  public:
-  Collector(const Scene& scene, const TreeBlock& block)
-      : scene_(scene), block_(block), routes_(block.nodes.size()), depths_(block.nodes.size()) {}
+  Collector(const Scene& scene, const RayScene& rays, const TreeBlock& block)
+      : scene_(scene), rays_(rays), block_(block), routes_(block.nodes.size()), depths_(block.nodes.size()) {}
 
   PixelFacts run(const std::vector<std::uint32_t>& roots) {
-    std::vector<std::pair<std::vector<std::string>, std::size_t>> paths;  // with the number of samples
+    std::vector<CountedPath> paths;
     for (std::size_t sample = 0; sample < roots.size(); ++sample) {
       const std::size_t end = sample + 1 < roots.size() ? roots[sample + 1] : block_.nodes.size();
       std::vector<std::string> lines;
       for (std::size_t node = roots[sample]; node < end; ++node)
         lines.push_back(add_node(node, static_cast<std::uint32_t>(sample)));
-      const auto known = std::ranges::find(paths, lines, &std::pair<std::vector<std::string>, std::size_t>::first);
+      const auto known = std::ranges::find(paths, lines, &CountedPath::first);
       if (known != paths.end())
         ++known->second;
       else
         paths.emplace_back(std::move(lines), 1);
     }
-    for (auto& [lines, count] : paths) {
-      if (paths.size() > 1)
-        facts_.lines.push_back(std::to_string(count) + " of " + std::to_string(roots.size()) + " samples");
-      for (std::string& line : lines) facts_.lines.push_back(std::move(line));
-    }
+    list(paths, roots.size());
     return std::move(facts_);
   }
 
  private:
+  using CountedPath = std::pair<std::vector<std::string>, std::size_t>;  // with the number of samples
+
+  void list(std::vector<CountedPath>& paths, std::size_t samples) {
+    if (paths.size() > kMostPaths) std::ranges::stable_sort(paths, std::greater(), &CountedPath::second);
+    std::size_t listed = 0;
+    for (CountedPath& path : paths | std::views::take(kMostPaths)) {
+      if (paths.size() > 1)
+        facts_.lines.push_back(std::to_string(path.second) + " of " + std::to_string(samples) + " samples");
+      for (std::string& line : path.first) facts_.lines.push_back(std::move(line));
+      listed += path.second;
+    }
+    if (listed < samples)
+      facts_.lines.push_back(std::to_string(samples - listed) + " samples on " +
+                             std::to_string(paths.size() - kMostPaths) + " other paths");
+  }
+
   /// Returns the node's line.
   std::string add_node(std::size_t index, std::uint32_t sample) {
     const RayNode& node = block_.nodes[index];
@@ -75,14 +90,15 @@ class Collector {
     const LightId id = scene_.light_order[place];
     const Light& light = scene_.light(id);
     SegmentFacts& segment = facts_.segments[{sample, route, id}];
-    segment = {"light " + light.light + " on " + route, link.state, {}, shadow_segment(node, light)};
+    const std::string name = light_name(light);
+    segment = {"light " + name + " on " + route, link.state, {}, shadow_segment(node, rays_.light(place))};
     std::string through;
     for (std::uint32_t i = 0; link.state == ShadowState::filtered && i < link.filters; ++i) {
       const ObjectId filter = block_.filters[link.first + i].object;
       segment.filters.push_back(filter.index());
-      const std::string name = object_name(scene_.object(filter));
-      through += (through.empty() ? "" : ", ") + name;
-      const std::string use = "light " + light.light + " through " + name + " on " + route;
+      const std::string filter_name = object_name(scene_.object(filter));
+      through += (through.empty() ? "" : ", ") + filter_name;
+      const std::string use = "light " + name + " through " + filter_name + " on " + route;
       if (facts_.filters.try_emplace(filter, use).second)
         facts_.materials[scene_.object(filter).material].push_back(use);
     }
@@ -90,16 +106,17 @@ class Collector {
       case ShadowState::facing_away:
         return "";
       case ShadowState::blocked:
-        return light.light + " blocked";
+        return name + " blocked";
       case ShadowState::open:
       case ShadowState::filtered:
         break;
     }
     facts_.lights.try_emplace(id, route);
-    return light.light + (through.empty() ? "" : " through " + through);
+    return name + (through.empty() ? "" : " through " + through);
   }
 
   const Scene& scene_;
+  const RayScene& rays_;
   const TreeBlock& block_;
   std::vector<Route> routes_;
   std::vector<std::size_t> depths_;
@@ -108,8 +125,14 @@ class Collector {
 
 }  // namespace
 
-PixelFacts pixel_facts(const Scene& scene, const TreeBlock& block, const std::vector<std::uint32_t>& roots) {
-  return Collector(scene, block).run(roots);
+PixelFacts pixel_facts(const Scene& scene, const RayScene& rays, const TreeBlock& block,
+                       const std::vector<std::uint32_t>& roots) {
+  return Collector(scene, rays, block).run(roots);
+}
+
+std::string light_name(const Light& light) {
+  if (light.kind == LightKind::suns) return "suns";
+  return light.kind == LightKind::emission ? "emission of " + light.light : light.light;
 }
 
 std::string object_name(const Object& object) {

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "trace/ray_scene.h"
 #include "trace/shadow/shadow_segment.h"
 #include "trace/tree/tree_block.h"
 
@@ -30,12 +31,16 @@ struct PixelFacts {
   Route environment;                                         // "" : no ray leaves the scene
   /// By sample, route and light.
   std::map<std::tuple<std::uint32_t, Route, LightId>, SegmentFacts> segments;
-  std::vector<std::string> lines;  // the ray paths, a line a node, indented; equal paths stand once
+  std::vector<std::string> lines;  // the commonest ray paths, a line a node, indented; equal paths stand once
 };
 
-/// `block`: complete trees that hold in `scene`, one a sample of the pixel; `roots`: their first nodes.
-[[nodiscard]] PixelFacts pixel_facts(const Scene& scene, const TreeBlock& block,
+/// `block`: complete trees that hold in `scene`, one a sample of the pixel; `roots`: their first nodes; `rays`: of the
+/// scene.
+[[nodiscard]] PixelFacts pixel_facts(const Scene& scene, const RayScene& rays, const TreeBlock& block,
                                      const std::vector<std::uint32_t>& roots);
+
+/// "Lamp", "suns", "emission of Neon".
+[[nodiscard]] std::string light_name(const Light& light);
 
 /// "Chair", "Chair primitive 2".
 [[nodiscard]] std::string object_name(const Object& object);

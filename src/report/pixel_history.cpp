@@ -3,8 +3,8 @@
 #include <cstring>
 #include <set>
 
-#include "color/shade.h"
 #include "image/sampling.h"
+#include "image/tile_light.h"
 #include "replay/change.h"
 #include "report/pixel_facts.h"
 #include "trace/scene_level.h"
@@ -55,25 +55,52 @@ struct Comparison {
     for (const SceneDelta::MaterialChange& change : delta.materials) add_material(change.id, casters, causes);
     for (const SceneDelta::ObjectChange& change : delta.objects) {
       const std::string name = "node " + object_name(scene.object(change.id)) + ": ";
+      const std::string* how = nullptr;
       for (const auto* names : {&before.hits, &after.hits, &before.filters, &after.filters, &casters})
-        if (const std::string* how = find(*names, change.id)) {
-          causes.push_back(name + *how);
-          break;
-        }
+        if (how == nullptr) how = find(*names, change.id);
+      if (how != nullptr) causes.push_back(name + *how);
+      if (how == nullptr) add_emission_of(change, name, causes);
     }
-    for (const SceneDelta::LightChange& change : delta.lights)
-      for (const PixelFacts* facts : {&before, &after})
-        if (const auto reached = facts->lights.find(change.id); reached != facts->lights.end()) {
-          const Light& light = scene.light(change.id);
-          causes.push_back("light " + (light.light.empty() ? change.before.light : light.light) + ": on " +
-                           reached->second);
-          break;
-        }
+    for (const SceneDelta::LightChange& change : delta.lights) add_light(change, causes);
     if (delta.ambient_before && !(before.hits.empty() && after.hits.empty()))
       causes.push_back("ambient light: on " + (before.hits.empty() ? after : before).hits.begin()->second);
     if (delta.environment_before && !(before.environment.empty() && after.environment.empty()))
       causes.push_back("environment: " + (before.environment.empty() ? after : before).environment);
+    if (causes.empty()) add_met_lights(delta, causes);
     return causes;
+  }
+
+  static std::string changed_name(const SceneDelta::LightChange& change, const Light& light) {
+    return "light " + light_name(light.alive || !light.light.empty() ? light : change.before);
+  }
+  void add_light(const SceneDelta::LightChange& change, std::vector<std::string>& causes) const {
+    for (const PixelFacts* facts : {&before, &after}) {
+      const auto reached = facts->lights.find(change.id);
+      if (reached == facts->lights.end()) continue;
+      causes.push_back(changed_name(change, scene.light(change.id)) + ": on " + reached->second);
+      return;
+    }
+  }
+  /// Of an object that emits: what moves is its share in the light of its material.
+  void add_emission_of(const SceneDelta::ObjectChange& change, const std::string& name,
+                       std::vector<std::string>& causes) const {
+    const MaterialId now = scene.object(change.id).material;
+    for (const PixelFacts* facts : {&before, &after})
+      for (const auto& [id, route] : facts->lights) {
+        const Light& light = scene.light(id);
+        if (light.kind != LightKind::emission || (light.material != now && light.material != change.before.material))
+          continue;
+        causes.push_back(name + "light " + light_name(light) + " on " + route);
+        return;
+      }
+  }
+  /// What no sample brings: a light that rays have crossed, or do now.
+  void add_met_lights(const SceneDelta& delta, std::vector<std::string>& causes) const {
+    for (const SceneDelta::LightChange& change : delta.lights)
+      causes.push_back(changed_name(change, scene.light(change.id)) + ": met by rays");
+    if (!causes.empty()) return;
+    for (const SceneDelta::ObjectChange& change : delta.objects)
+      causes.push_back("node " + object_name(scene.object(change.id)) + ": its light, met by rays");
   }
 
   void add_material(MaterialId id, const std::map<ObjectId, std::string>& casters,
@@ -108,7 +135,7 @@ struct PixelHistory::Impl {
   }
 
   void trace() {
-    const GrowScene grow{rays, &level.current(rays), view.max_depth, view.shadow_bits};
+    const GrowScene grow = grow_scene(rays, &level.current(rays), view, view.shadow_bits);
     const PrimaryRays primary(state.scene().camera, view);
     std::vector<SpawnedRay> primaries;
     primary.append(pixel, 0, view.samples, primaries);
@@ -116,11 +143,13 @@ struct PixelHistory::Impl {
     std::vector<std::uint32_t> roots;
     GrowCounters counters;
     trace_trees(grow, primaries, 0, block, roots, counters);
-    ProgramTable programs;
-    std::vector<Rgba> colors(view.samples);
-    Shader(rays, programs).shade(block, roots, colors);
-    color = pixel_color(colors.data(), view.samples);
-    facts = pixel_facts(state.scene(), block, roots);
+    const TilePrograms programs(rays);
+    TileShading shading(programs, view.samples);
+    TileLight light;
+    shading.begin(pixel, light);
+    shading.add(block, roots, 0, light);
+    color = programs.pixel(light, 0, view.samples);
+    facts = pixel_facts(state.scene(), rays, block, roots);
   }
 
   PixelStep step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {

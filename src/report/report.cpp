@@ -79,11 +79,13 @@ Json number_json(const StepReport& step, bool of_drag) {
 Json options_json(const RunReport& report) {
   const StructureOptions& structures = report.structures;
   const bool is_path = report.view.integrator == Integrator::path;
+  const Lens& lens = report.view.lens;
   return {{"integrator", integrator_word(report.view.integrator)},
           {"max_depth", report.view.max_depth},
           {"diffuse_depth", is_path ? Json(report.view.diffuse_depth) : Json(nullptr)},
           {"glossy_depth", is_path ? Json(report.view.glossy_depth) : Json(nullptr)},
           {"transmission_depth", is_path ? Json(report.view.transmission_depth) : Json(nullptr)},
+          {"lens", lens.radius > 0 ? Json{lens.radius, lens.focus} : Json(nullptr)},
           {"memory", or_null(structures.memory_bytes)},
           {"policy", structures.policy},
           {"disk", or_null(structures.disk_bytes)},
@@ -188,6 +190,7 @@ Json report_head_json(const RunReport& report) {
           {"camera", report.camera.name},
           {"resolution", {report.camera.width, report.camera.height}},
           {"samples", report.view.samples},
+          {"noise", or_null(report.noise)},
           {"options", options_json(report)},
           {"machine", {{"threads", report.threads}, {"cpu", cpu_model()}}},
           {"full_render_seconds", or_null(report.full_render_seconds)},

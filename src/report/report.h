@@ -100,6 +100,7 @@ struct RunReport {
   std::optional<double> verify_percent;
   std::optional<StepRange> step_range;  // none: all
   std::size_t threads = 0;
+  std::optional<double> noise;  // of the frame before any step (image/layers/half_light.h)
   std::optional<double> full_render_seconds;
   CacheSizes cache;
   std::vector<std::string> cache_damage;  // sentences: what was damaged or missing and traced again

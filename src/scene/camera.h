@@ -23,6 +23,20 @@ struct Camera {
   std::uint32_t width = 0, height = 0;                 // pixels
 };
 
+inline constexpr float kLeastLens = 1e-9F, kMostLens = 1e9F;  // metres, of a lens that has a size
+
+/// What puts a camera out of focus, metres: rays leave a disc about the eye and meet again where it is sharp.
+struct Lens {
+  float radius = 0;  // 0: all is sharp
+  float focus = 1;   // along the camera's axis to the plane that is sharp; above 0
+  bool operator==(const Lens&) const = default;
+};
+/// Of a size, and within what can be traced?
+[[nodiscard]] inline bool is_lens(const Lens& lens) {
+  const auto is_length = [](float metres) { return metres >= kLeastLens && metres <= kMostLens; };
+  return is_length(lens.radius) && is_length(lens.focus);
+}
+
 struct CameraRay {
   Point origin;
   Direction direction;  // unit

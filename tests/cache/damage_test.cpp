@@ -201,7 +201,10 @@ TEST_F(Damage, a_replay_says_what_it_traced_again_and_strict_refuses) {
     arguments.insert(arguments.begin(), RELOOK_PROGRAM);
     return run_program(arguments);
   };
-  ASSERT_EQ(run({"preprocess", scene, "-o", cache, "--resolution", "64x36", "--quiet", "--overwrite"}).exit_code, 0);
+  ASSERT_EQ(run({"preprocess", scene, "--integrator", "whitted", "-o", cache, "--resolution", "64x36", "--quiet",
+                 "--overwrite"})
+                .exit_code,
+            0);
   const auto replayed = [&](const std::string& name) {
     const ProgramResult result = run({"replay", cache, journal, "-o", (folder_ / name).string(), "--progress", "none"});
     EXPECT_EQ(result.exit_code, 0) << result.output;

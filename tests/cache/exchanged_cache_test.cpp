@@ -25,7 +25,7 @@ TEST(ExchangedCache, IsNeverMixedWithTheOneThatWasThere) {
       {"op": "replace", "path": "/nodes/CentralSphere/translation", "value": [0.3, 1.2, 0]}]}]})";
   const std::vector<std::string> small{"--resolution", "64x36", "--quiet"};
   const auto preprocess = [&](const std::string& cache, std::vector<std::string> options) {
-    std::vector<std::string> words{RELOOK_PROGRAM, "preprocess", scene, "-o", at(cache)};
+    std::vector<std::string> words{RELOOK_PROGRAM, "preprocess", scene, "--integrator", "whitted", "-o", at(cache)};
     words.insert(words.end(), small.begin(), small.end());
     words.insert(words.end(), options.begin(), options.end());
     ASSERT_EQ(run(words).exit_code, 0);

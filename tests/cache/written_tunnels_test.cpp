@@ -66,7 +66,8 @@ TEST(Preprocess, WritesTunnelsAndAReplayReadsThemOrSaysWhyNot) {
     return std::pair(result.output, report);
   };
   const auto written = [&](const std::string& cache, std::vector<std::string> options) {
-    std::vector<std::string> arguments{"preprocess", scene, "-o", (folder / cache).string(), "--resolution", "160x90"};
+    std::vector<std::string> arguments{
+        "preprocess", scene, "--integrator", "whitted", "-o", (folder / cache).string(), "--resolution", "160x90"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     EXPECT_EQ(run(arguments).exit_code, 0);
     Json manifest;

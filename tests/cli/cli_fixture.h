@@ -38,7 +38,8 @@ class Cli : public testing::Test {
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   ProgramResult preprocess(const std::string& output) const {
-    return relook({"preprocess", kScene, "-o", at(output), "--resolution", "72x40", "--quiet"});
+    return relook(
+        {"preprocess", kScene, "--integrator", "whitted", "-o", at(output), "--resolution", "72x40", "--quiet"});
   }
   ScratchFolder folder_{"cli"};
 };

@@ -53,7 +53,8 @@ class Fault : public testing::Test {
  protected:
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   void make_cache(const std::string& resolution) const {
-    const ProgramResult made = relook({"preprocess", kScene, "-o", at("c"), "--resolution", resolution, "--quiet"});
+    const ProgramResult made =
+        relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", resolution, "--quiet"});
     ASSERT_EQ(made.exit_code, 0) << made.output;
   }
   void write_journal(int steps) const { std::ofstream(at("j.json")) << long_journal(steps); }
@@ -96,8 +97,8 @@ TEST_F(Fault, a_run_short_of_memory_is_taken_up_with_more) {
 }
 
 TEST_F(Fault, sigterm_during_preprocess_leaves_nothing) {
-  const pid_t child =
-      start_relook({"preprocess", kScene, "-o", at("big"), "--resolution", "1920x1080", "--samples", "16", "--quiet"});
+  const pid_t child = start_relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("big"), "--resolution",
+                                    "1920x1080", "--samples", "16", "--quiet"});
   std::this_thread::sleep_for(300ms);
   kill(child, SIGTERM);
   EXPECT_EQ(wait_for(child), 128 + SIGTERM);
@@ -107,8 +108,8 @@ TEST_F(Fault, sigterm_during_preprocess_leaves_nothing) {
 TEST_F(Fault, kill_during_preprocess_leaves_a_sound_cache_or_none) {
   make_cache("64x36");
   for (int i = 0; i < 12; ++i) {
-    const pid_t child =
-        start_relook({"preprocess", kScene, "-o", at("c"), "--resolution", "320x180", "--quiet", "--overwrite"});
+    const pid_t child = start_relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution",
+                                      "320x180", "--quiet", "--overwrite"});
     std::this_thread::sleep_for(std::chrono::milliseconds(30 + 40 * i));
     kill(child, SIGKILL);
     wait_for(child);
@@ -153,7 +154,9 @@ TEST_F(Fault, two_replays_of_one_cache_agree_and_leave_it_untouched) {
 TEST_F(Fault, two_preprocesses_to_one_output_leave_one_sound_cache) {
   // The later one finds that it has done the same, or is refused, or asked to replace what the other has written.
   const auto codes_of = [&](const std::string& second_resolution, const std::vector<std::string>& flags) {
-    std::vector<std::string> one{"preprocess", kScene, "-o", at("c"), "--quiet", "--resolution", "160x90"}, other = one;
+    std::vector<std::string> one{"preprocess", kScene,    "--integrator", "whitted", "-o",
+                                 at("c"),      "--quiet", "--resolution", "160x90"},
+        other = one;
     other.back() = second_resolution;
     one.insert(one.end(), flags.begin(), flags.end());
     other.insert(other.end(), flags.begin(), flags.end());
@@ -214,7 +217,8 @@ class SmallDisk {
 TEST_F(Fault, a_full_disk_during_preprocess_leaves_nothing) {
   const SmallDisk disk(at("disk"), "128k");
   if (!disk.is_mounted()) GTEST_SKIP() << "SKIPPED: mounting a small tmpfs is not permitted here";
-  const ProgramResult result = relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "160x90", "--quiet"});
+  const ProgramResult result = relook(
+      {"preprocess", kScene, "--integrator", "whitted", "-o", at("disk/c"), "--resolution", "160x90", "--quiet"});
   EXPECT_EQ(result.exit_code, 4) << result.output;
   EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1) << result.output;
   EXPECT_EQ(files_below(at("disk")), std::vector<std::string>{});
@@ -224,7 +228,8 @@ TEST_F(Fault, a_full_disk_during_preprocess_leaves_nothing) {
 TEST_F(Fault, a_full_disk_during_preprocess_is_told_by_the_output_of_the_user) {
   const SmallDisk disk(at("disk"), "128k");
   if (!disk.is_mounted()) GTEST_SKIP() << "SKIPPED: mounting a small tmpfs is not permitted here";
-  const ProgramResult result = relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "160x90", "--quiet"});
+  const ProgramResult result = relook(
+      {"preprocess", kScene, "--integrator", "whitted", "-o", at("disk/c"), "--resolution", "160x90", "--quiet"});
   EXPECT_EQ(result.exit_code, 4) << result.output;
   EXPECT_TRUE(result.output.starts_with("relook: " + at("disk/c"))) << result.output;
   EXPECT_EQ(result.output.find(".relook-"), std::string::npos) << result.output;
@@ -254,7 +259,8 @@ TEST_F(Fault, a_full_disk_during_replay_leaves_no_half_file) {
 TEST_F(Fault, a_full_disk_during_render_leaves_no_frame) {
   const SmallDisk disk(at("disk"), "16k");
   if (!disk.is_mounted()) GTEST_SKIP() << "SKIPPED: mounting a small tmpfs is not permitted here";
-  const ProgramResult result = relook({"render", kScene, "-o", at("disk/x.exr"), "--resolution", "160x90", "--quiet"});
+  const ProgramResult result = relook(
+      {"render", kScene, "--integrator", "whitted", "-o", at("disk/x.exr"), "--resolution", "160x90", "--quiet"});
   EXPECT_EQ(result.exit_code, 4) << result.output;
   EXPECT_EQ(files_below(at("disk")), std::vector<std::string>{});
 }
@@ -267,11 +273,15 @@ TEST_F(Fault, a_read_only_cache_is_enough_for_a_replay) {
   std::filesystem::copy(at("c"), at("disk/c"), std::filesystem::copy_options::recursive);
   ASSERT_EQ(mount("tmpfs", at("disk").c_str(), "tmpfs", MS_REMOUNT | MS_RDONLY, nullptr), 0);
   EXPECT_EQ(relook({"replay", at("disk/c"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
-  EXPECT_EQ(relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "64x36", "--quiet"}).exit_code, 0)
-      << "it is complete";
   EXPECT_EQ(
-      relook({"preprocess", kScene, "-o", at("disk/c"), "--resolution", "64x36", "--quiet", "--overwrite"}).exit_code,
-      6);
+      relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("disk/c"), "--resolution", "64x36", "--quiet"})
+          .exit_code,
+      0)
+      << "it is complete";
+  EXPECT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("disk/c"), "--resolution", "64x36",
+                    "--quiet", "--overwrite"})
+                .exit_code,
+            6);
 }
 
 }  // namespace

@@ -90,7 +90,9 @@ class Interruption : public testing::Test {
 };
 
 TEST_F(Interruption, a_run_is_left_and_taken_up_by_any_signal_within_steps_drags_and_wedges) {
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "96x54", "--quiet"})
+                .exit_code,
+            0);
   ASSERT_EQ(relook(replay("whole")).exit_code, 0);
   const auto whole = frames("whole");
   const std::vector<std::pair<int, std::string>> signals{
@@ -128,7 +130,9 @@ bool has_pending_signal(pid_t process) {
 }
 
 TEST_F(Interruption, further_signals_change_nothing) {
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "96x54", "--quiet"})
+                .exit_code,
+            0);
   const pid_t child = start_relook(replay("run"));
   wait_for("run/frames/0002.exr");
   for (const int signal : {SIGUSR1, SIGTERM, SIGINT, SIGTERM, SIGUSR2, SIGHUP, SIGXCPU}) {
@@ -140,19 +144,25 @@ TEST_F(Interruption, further_signals_change_nothing) {
 }
 
 TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "640x360",
+                    "--samples", "64", "--quiet"})
+                .exit_code,
+            0);
   ASSERT_EQ(
-      relook({"preprocess", kScene, "-o", at("c"), "--resolution", "640x360", "--samples", "64", "--quiet"}).exit_code,
+      relook({"render", kScene, "--integrator", "whitted", "-o", at("a.exr"), "--resolution", "2048x1152", "--quiet"})
+          .exit_code,
       0);
-  ASSERT_EQ(relook({"render", kScene, "-o", at("a.exr"), "--resolution", "2048x1152", "--quiet"}).exit_code, 0);
-  ASSERT_EQ(relook({"render", kScene, "-o", at("b.exr"), "--resolution", "2048x1152", "--lights", "auto", "--quiet"})
+  ASSERT_EQ(relook({"render", kScene, "--integrator", "whitted", "-o", at("b.exr"), "--resolution", "2048x1152",
+                    "--lights", "auto", "--quiet"})
                 .exit_code,
             0);
   std::ofstream(at("slow.json"))
       << Json{{"relook", "journal/1"}, {"steps", {{{"edit", move(0.5)}}, {{"edit", move(0.1)}}}}}.dump();
   const std::vector<std::vector<std::string>> commands{
-      {"render", kScene, "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "256"},
-      {"render", kScene, "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "16", "--aovs"},
-      {"preprocess", kScene, "-o", at("x"), "--resolution", "1920x1080", "--samples", "64"},
+      {"render", kScene, "--integrator", "whitted", "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "256"},
+      {"render", kScene, "--integrator", "whitted", "-o", at("x.exr"), "--resolution", "1920x1080", "--samples", "16",
+       "--aovs"},
+      {"preprocess", kScene, "--integrator", "whitted", "-o", at("x"), "--resolution", "1920x1080", "--samples", "64"},
       {"replay", at("c"), at("slow.json"), "-o", at("run"), "--aovs", "--verify"},
       {"compare", at("a.exr"), at("b.exr"), "-o", at("compared")},
       {"plan", at("c"), at("slow.json"), "--json=" + at("plan.json")}};
@@ -181,7 +191,9 @@ TEST_F(Interruption, long_work_of_every_verb_ends_and_leaves_no_files) {
 }
 
 TEST_F(Interruption, a_reader_that_has_stopped_reading_does_not_keep_a_run_from_ending) {
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "32x18", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "32x18", "--quiet"})
+                .exit_code,
+            0);
   int ends[2];
   ASSERT_EQ(pipe2(ends, O_CLOEXEC), 0);
   ASSERT_GE(fcntl(ends[1], F_SETPIPE_SZ, 4096), 0);

@@ -74,7 +74,7 @@ class KillPoints : public testing::Test {
     return calls;
   }
   [[nodiscard]] std::vector<std::string> preprocess(const std::string& cache) const {
-    return {"preprocess", kScene, "-o", at(cache), "--resolution", "40x24"};
+    return {"preprocess", kScene, "--integrator", "whitted", "-o", at(cache), "--resolution", "40x24"};
   }
   [[nodiscard]] std::vector<std::string> replay(const std::string& into) const {
     return {"replay", at("reference"), at("j.json"), "-o", at(into)};

@@ -19,7 +19,8 @@ class MemoryLimit : public testing::Test {
  protected:
   void SetUp() override {
     if (kIsInstrumented) GTEST_SKIP() << "sanitizers take memory of their own";
-    ASSERT_EQ(run_program({RELOOK_PROGRAM, "preprocess", kScene, "-o", at("c"), "--resolution", "800x450", "--quiet"})
+    ASSERT_EQ(run_program({RELOOK_PROGRAM, "preprocess", kScene, "--integrator", "whitted", "-o", at("c"),
+                           "--resolution", "800x450", "--quiet"})
                   .exit_code,
               0);
     std::ofstream(at("j.json")) << R"({"relook": "journal/1", "steps": [

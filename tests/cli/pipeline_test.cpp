@@ -33,7 +33,10 @@ class Pipeline : public testing::Test {
  protected:
   void SetUp() override {
     std::ofstream(folder_ / "j.json") << kJournalOfAllKinds;
-    ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(
+        relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "72x40", "--quiet"})
+            .exit_code,
+        0);
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] Json json(const std::string& name) const {
@@ -116,7 +119,8 @@ TEST_F(Pipeline, files_that_cannot_be_written_are_found_out_before_the_work) {
 }
 
 TEST_F(Pipeline, logs_are_one_json_object_a_line) {
-  const ProgramResult rendered = relook({"render", kScene, "-o", at("x.exr"), "--resolution", "72x40", "--log-json"});
+  const ProgramResult rendered =
+      relook({"render", kScene, "--integrator", "whitted", "-o", at("x.exr"), "--resolution", "72x40", "--log-json"});
   ASSERT_EQ(rendered.exit_code, 0);
   std::size_t logged = 0;
   for (const std::string& line : lines_of(rendered.output))
@@ -127,7 +131,8 @@ TEST_F(Pipeline, logs_are_one_json_object_a_line) {
       ++logged;
     }
   EXPECT_GT(logged, 1U);
-  const ProgramResult failed = relook({"render", at("none.gltf"), "-o", at("x.exr"), "--log-json"});
+  const ProgramResult failed =
+      relook({"render", at("none.gltf"), "--integrator", "whitted", "-o", at("x.exr"), "--log-json"});
   EXPECT_EQ(failed.exit_code, 2);
   const Json error = parse_json(failed.output, "stderr");
   EXPECT_EQ(error["level"], "error");
@@ -156,10 +161,10 @@ TEST_F(Pipeline, traces_have_the_stages_of_each_verb) {
   const Json& step = replayed.at("2 twin");
   EXPECT_EQ(step["args"]["class"], "geometric");
   EXPECT_LT(step["ts"], replayed.at("5 gone")["ts"]);
-  ASSERT_EQ(
-      relook({"render", kScene, "-o", at("x.exr"), "--resolution", "72x40", "--quiet", "--trace", at("render.json")})
-          .exit_code,
-      0);
+  ASSERT_EQ(relook({"render", kScene, "--integrator", "whitted", "-o", at("x.exr"), "--resolution", "72x40", "--quiet",
+                    "--trace", at("render.json")})
+                .exit_code,
+            0);
   const auto rendered = spans_of(json("render.json"));
   EXPECT_TRUE(rendered.contains("load scene") && rendered.contains("render") && rendered.contains("write frame"));
   EXPECT_LE(rendered.at("load scene")["ts"].get<double>() + rendered.at("load scene")["dur"].get<double>(),

@@ -14,8 +14,8 @@ TEST_F(Cli, a_cache_with_fewer_ray_trees_gives_the_same_frames) {
   write_text(at("j.json"), kJournal);
   // Several groups of tiles: 131,072 samples each.
   const auto replayed = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> all{"preprocess", kScene,      "-o", at("c"),   "--resolution",
-                                 "200x120",    "--samples", "16", "--quiet", "--overwrite"};
+    std::vector<std::string> all{"preprocess",   kScene,    "--integrator", "whitted", "-o",      at("c"),
+                                 "--resolution", "200x120", "--samples",    "16",      "--quiet", "--overwrite"};
     all.insert(all.end(), options.begin(), options.end());
     EXPECT_EQ(relook(all).exit_code, 0);
     EXPECT_EQ(relook({"check", at("c"), "--quiet"}).exit_code, 0);
@@ -35,8 +35,9 @@ TEST_F(Cli, a_cache_with_fewer_ray_trees_gives_the_same_frames) {
   EXPECT_LE(folder_bytes(at("c")), half + (8 << 10));
   EXPECT_GT(folder_bytes(at("c")), least);
   EXPECT_EQ(some["frames"], whole["frames"]);
-  expect_error(relook({"preprocess", kScene, "-o", at("d"), "--resolution", "200x120", "--disk", "9K", "--quiet"}), 4,
-               "--disk: this cache needs at least");
+  expect_error(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("d"), "--resolution", "200x120",
+                       "--disk", "9K", "--quiet"}),
+               4, "--disk: this cache needs at least");
   EXPECT_FALSE(std::filesystem::exists(at("d")));
 }
 
@@ -143,10 +144,10 @@ TEST_F(Cli, colour_trees_of_chosen_parameters_change_no_frame) {
 
 TEST_F(Cli, shadow_bits_are_fixed_by_preprocess) {
   ASSERT_EQ(preprocess("c").exit_code, 0);
-  ASSERT_EQ(
-      relook({"preprocess", kScene, "-o", at("counted"), "--resolution", "72x40", "--quiet", "--shadow-bits", "2"})
-          .exit_code,
-      0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("counted"), "--resolution", "72x40",
+                    "--quiet", "--shadow-bits", "2"})
+                .exit_code,
+            0);
   write_text(at("j.json"), kJournal);
   const auto replay = [&](const std::string& cache, std::vector<std::string> flags) {
     flags.insert(flags.begin(), {"replay", at(cache), at("j.json"), "-o", at("run-" + cache), "--quiet"});
@@ -239,8 +240,8 @@ TEST_F(Cli, a_rendered_step_is_byte_for_byte_the_replayed_frame_with_its_header)
   write_text(at("j.json"), kJournal);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--float", "--quiet"}).exit_code, 0);
   for (const auto& [step, frame] : {std::pair{"0", "0000"}, {"1", "0001"}, {"2", "0002_02"}}) {
-    ASSERT_EQ(relook({"render", kScene, "-o", at("full.exr"), "--journal", at("j.json"), "--step", step, "--float",
-                      "--resolution", "72x40", "--quiet"})
+    ASSERT_EQ(relook({"render", kScene, "--integrator", "whitted", "-o", at("full.exr"), "--journal", at("j.json"),
+                      "--step", step, "--float", "--resolution", "72x40", "--quiet"})
                   .exit_code,
               0);
     EXPECT_TRUE(read_file(at("full.exr")) == read_file(at("run/frames/" + std::string(frame) + ".exr")))

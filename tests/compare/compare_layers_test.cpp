@@ -12,8 +12,9 @@ namespace {
 class CompareLayers : public testing::Test {
  protected:
   CompareLayers() {
-    const ProgramResult result = run_program({RELOOK_PROGRAM, "render", kScene, "-o", at("a.exr"), "--resolution",
-                                              "24x16", "--samples", "3", "--aovs", "--quiet"});
+    const ProgramResult result =
+        run_program({RELOOK_PROGRAM, "render", kScene, "--integrator", "whitted", "-o", at("a.exr"), "--resolution",
+                     "24x16", "--samples", "3", "--aovs", "--quiet"});
     EXPECT_EQ(result.exit_code, 0) << result.output;
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }

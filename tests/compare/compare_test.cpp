@@ -140,7 +140,8 @@ TEST_F(CompareFrames, runs_of_other_settings_are_a_table) {
     return run_program(arguments).exit_code;
   };
   std::ofstream(folder_ / "j.json") << kJournal;
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}), 0);
+  ASSERT_EQ(
+      relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "72x40", "--quiet"}), 0);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("one"), "--quiet", "--baseline"}), 0);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("two"), "--quiet", "--tunnels", "0"}), 0);
   ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("three"), "--quiet", "--groups", "0"}), 0);

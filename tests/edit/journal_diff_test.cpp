@@ -51,8 +51,9 @@ class JournalDiff : public testing::Test {
     ASSERT_EQ(report["steps"].size(), 2);
     EXPECT_EQ(report["steps"][1]["verify"]["pixels_different"], 0);
     EXPECT_EQ(report["steps"][1]["pixels_changed"] > 0, changes_pixels);
-    const ProgramResult rendered = run_program({RELOOK_PROGRAM, "render", at("scene/edited.gltf"), "-o",
-                                                at("edited.exr"), "--resolution", "120x68", "--quiet"});
+    const ProgramResult rendered =
+        run_program({RELOOK_PROGRAM, "render", at("scene/edited.gltf"), "--integrator", "whitted", "-o",
+                     at("edited.exr"), "--resolution", "120x68", "--quiet"});
     ASSERT_EQ(rendered.exit_code, 0) << rendered.output;
     const ProgramResult compared =
         run_program({RELOOK_PROGRAM, "compare", at("run/frames/0001.exr"), at("edited.exr")});

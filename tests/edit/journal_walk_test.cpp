@@ -154,7 +154,7 @@ class JournalWalkProgram : public testing::Test {
   void SetUp() override {
     std::ofstream(at("j.json")) << journal_of_all_forms("Lamp", "Lamp", 3);
     journal_ = read_journal(at("j.json"));
-    run({"preprocess", scene(), "-o", at("cache"), "--resolution", "96x54", "--quiet"});
+    run({"preprocess", scene(), "--integrator", "whitted", "-o", at("cache"), "--resolution", "96x54", "--quiet"});
     run({"replay", at("cache"), at("j.json"), "-o", at("run"), "--quiet"});
     for (const JournalEvent& event : JournalWalk(journal_, 0, 5)) {
       all_.push_back(frame_name(event.place));
@@ -227,8 +227,8 @@ TEST_F(JournalWalkProgram, blame_follows_it) {
 
 TEST_F(JournalWalkProgram, render_follows_it) {
   for (std::uint32_t step = 0; step <= 5; ++step) {
-    run({"render", scene(), "-o", at("frame.exr"), "--resolution", "96x54", "--journal", at("j.json"), "--step",
-         std::to_string(step), "--quiet", "--overwrite"});
+    run({"render", scene(), "--integrator", "whitted", "-o", at("frame.exr"), "--resolution", "96x54", "--journal",
+         at("j.json"), "--step", std::to_string(step), "--quiet", "--overwrite"});
     const std::string replayed = at("run") + "/" + frame_name(last_place_of(journal_, step));
     EXPECT_EQ(frame_bytes(at("frame.exr")), frame_bytes(replayed)) << step;
   }

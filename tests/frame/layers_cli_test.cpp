@@ -32,7 +32,8 @@ class LayersCli : public testing::Test {
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
   void make_frame() {
-    relook({"render", kScene, "-o", at("f.exr"), "--resolution", "72x40", "--samples", "3", "--aovs", "--quiet"});
+    relook({"render", kScene, "--integrator", "whitted", "-o", at("f.exr"), "--resolution", "72x40", "--samples", "3",
+            "--aovs", "--quiet"});
   }
   /// False, and said, when a program that others use to read frames is not installed.
   [[nodiscard]] static bool has(const std::string& program) {
@@ -45,15 +46,16 @@ class LayersCli : public testing::Test {
 
 TEST_F(LayersCli, a_replay_writes_the_files_of_full_renders) {
   std::ofstream(at("j.json")) << kJournal;
-  relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--samples", "2", "--quiet"});
+  relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "72x40", "--samples", "2",
+          "--quiet"});
   relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--aovs", "--quiet", "--verify"});
   std::map<std::string, std::string> last_frames;  // by step
   const Json report = parse_json(text_of(read_file(at("run/report.json"))), "report.json");
   for (const Json& entry : report["steps"])
     last_frames[std::to_string(entry["step"].get<int>())] = entry["frame"].get<std::string>();
   for (const std::string step : {"0", "1", "2", "3", "4", "5"}) {
-    relook({"render", kScene, "-o", at(step + ".exr"), "--resolution", "72x40", "--samples", "2", "--aovs", "--quiet",
-            "--journal", at("j.json"), "--step", step});
+    relook({"render", kScene, "--integrator", "whitted", "-o", at(step + ".exr"), "--resolution", "72x40", "--samples",
+            "2", "--aovs", "--quiet", "--journal", at("j.json"), "--step", step});
     // Frame 0 of a replay belongs to its journal, as step 0 of a render with a journal does.
     EXPECT_EQ(frame_bytes(at(step + ".exr")), frame_bytes(at("run/" + last_frames.at(step)))) << step;
   }
@@ -69,7 +71,8 @@ TEST_F(LayersCli, a_replay_writes_the_files_of_full_renders) {
 
 TEST_F(LayersCli, without_the_flag_there_are_no_layers) {
   make_frame();
-  relook({"render", kScene, "-o", at("plain.exr"), "--resolution", "72x40", "--samples", "3", "--quiet"});
+  relook({"render", kScene, "--integrator", "whitted", "-o", at("plain.exr"), "--resolution", "72x40", "--samples", "3",
+          "--quiet"});
   const LayerFile plain = read_layers(at("plain.exr")), layered = read_layers(at("f.exr"));
   EXPECT_EQ(plain.channels.size(), 4U);
   EXPECT_EQ(plain.attributes.size(), 4U);  // OpenEXR's type; scene, step and class

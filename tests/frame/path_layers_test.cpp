@@ -130,6 +130,37 @@ TEST(PathLayersOfAScene, albedo_is_the_base_color) {
   }
 }
 
+/// Of independent sets of numbers (the same image, shifted) errors are as large as the layer says, as a mean.
+TEST_P(PathLayers, have_the_variance_that_halves_of_the_samples_tell) {
+  const SceneState state = path_scene(GetParam());
+  const auto render_of = [&](std::uint32_t samples) {
+    ViewOptions view = kView;
+    view.samples = samples;
+    RenderStats stats;
+    return render_with_sums(state.scene(), view, stats);
+  };
+  const Image image = render_of(16), first_half = render_of(8), converged = render_of(256);
+  const LayerFile file = layers(state.scene(), image, PixelFormat::float32);
+  double told = 0, found = 0;
+  for (std::size_t i = 0; i < image.frame.pixels.size(); ++i) {
+    const float mean = image.frame.pixels[i].g, difference = first_half.frame.pixels[i].g - mean;
+    EXPECT_EQ(file.channel("variance.G")[i], difference * difference) << i;
+    const double error = static_cast<double>(mean - converged.frame.pixels[i].g);
+    // A bright dot that few samples meet would decide both sums.
+    if (std::fabs(error) > 0.5) continue;
+    told += static_cast<double>(file.channel("variance.G")[i]);
+    found += error * error;
+  }
+  EXPECT_GT(told, 0.4 * found);
+  EXPECT_LT(told, 8 * found) << "the whole set is stratified better than its halves";
+}
+
+TEST(PathLayersOfAScene, of_one_sample_a_pixel_know_no_variance) {
+  const SceneState state = path_scene(TestScene::spheres);
+  EXPECT_FALSE(FrameLayers(state.scene(), 1, PixelFormat::half).variance_column.has_value());
+  EXPECT_TRUE(FrameLayers(state.scene(), 2, PixelFormat::half).variance_column.has_value());
+}
+
 TEST(PathLayersOfAReplay, are_those_of_full_renders) {
   const std::string scene = (std::filesystem::path(RELOOK_SOURCE_DIR) / "scenes/spheres/spheres.gltf").string();
   const ScratchFolder folder("path_layers_cli");

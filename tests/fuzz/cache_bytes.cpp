@@ -139,7 +139,7 @@ void CacheBytes::write(const std::filesystem::path& cache) {
     Json options = Json::object();
     for (const char* key : {"camera", "samples", "max_depth", "shadow_bits", "integrator"})
       options[key] = content.value(key, Json());
-    for (const char* key : {"diffuse_depth", "glossy_depth", "transmission_depth"})
+    for (const char* key : {"diffuse_depth", "glossy_depth", "transmission_depth", "lens"})
       if (content.contains(key)) options[key] = content[key];
     content["options"] = hash128(bytes_of(json_text(options)));
     identity.options_hash = content["options"];

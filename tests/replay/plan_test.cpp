@@ -32,8 +32,8 @@ double median(std::vector<double> values) {
 /// Plans, replays, and compares: the same frames and classes, and samples and pixels within 20 % in the median.
 void expect_good_plan(const PlanCase& plan, const ScratchFolder& folder) {
   const std::string cache = (folder / "cache").string(), run = (folder / "run").string();
-  std::vector<std::string> preprocess{"preprocess",   plan.scene.string(), "-o",     cache,
-                                      "--resolution", plan.resolution,     "--quiet"};
+  std::vector<std::string> preprocess{"preprocess", plan.scene.string(), "--integrator",  "whitted", "-o",
+                                      cache,        "--resolution",      plan.resolution, "--quiet"};
   preprocess.insert(preprocess.end(), plan.view.begin(), plan.view.end());
   ASSERT_EQ(relook(preprocess).exit_code, 0);
   const std::string out = (folder / "plan.json").string();
@@ -96,8 +96,8 @@ TEST(Plan, table3_on_garden_is_foreseen) {
 TEST(Plan, a_wrong_journal_is_refused_before_anything_is_planned) {
   const ScratchFolder folder("plan_wrong");
   const std::string cache = (folder / "cache").string(), journal = (folder / "wrong.json").string();
-  ASSERT_EQ(relook({"preprocess", (kProject / "scenes/spheres/spheres.gltf").string(), "-o", cache, "--resolution",
-                    "64x36", "--quiet"})
+  ASSERT_EQ(relook({"preprocess", (kProject / "scenes/spheres/spheres.gltf").string(), "--integrator", "whitted", "-o",
+                    cache, "--resolution", "64x36", "--quiet"})
                 .exit_code,
             0);
   std::ofstream(journal) << R"({"relook": "journal/1", "steps": [{"edit": [

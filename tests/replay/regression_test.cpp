@@ -53,9 +53,10 @@ TEST(Regression, DenormalColorsAreTheSameInEveryProcess) {
     const ProgramResult result = run_program(command);
     EXPECT_EQ(result.exit_code, 0) << result.output;
   };
-  succeeds({"preprocess", scene, "-o", cache, "--resolution", size});
+  succeeds({"preprocess", scene, "--integrator", "whitted", "-o", cache, "--resolution", size});
   succeeds({"replay", cache, journal, "-o", run, "--float", "--verify"});
-  succeeds({"render", scene, "-o", folder / "full.exr", "--resolution", size, "--float", "--journal", journal});
+  succeeds({"render", scene, "--integrator", "whitted", "-o", folder / "full.exr", "--resolution", size, "--float",
+            "--journal", journal});
   succeeds({"compare", run / "frames" / "0001.exr", folder / "full.exr"});
 }
 

@@ -22,17 +22,17 @@ const std::filesystem::path kProject = RELOOK_SOURCE_DIR;
 const std::string kSpheres = (kProject / "scenes/spheres/spheres.gltf").string();
 constexpr std::uint32_t kWidth = 96, kHeight = 54;
 
-SceneState spheres() {
+SceneState spheres(Integrator integrator) {
   LookDocument document = make_look_document(import_gltf(kSpheres));
   const Camera camera = choose_camera(document, "", kWidth, kHeight);
-  return {std::move(document), camera, std::make_shared<PyramidStore>()};
+  return {std::move(document), camera, std::make_shared<PyramidStore>(), integrator};
 }
 
 bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 /// The frame before a journal and after each of its edits.
 std::vector<std::vector<Rgba>> frames_of_replay(const Journal& journal, const ViewOptions& view) {
-  SceneState state = spheres();
+  SceneState state = spheres(view.integrator);
   RenderStats stats;
   Image image = preprocess(state.scene(), view, stats);
   Replayer replayer(std::move(state), std::move(image));
@@ -63,7 +63,7 @@ void expect_history(const Journal& journal, const ViewOptions& view, std::size_t
   for (const std::size_t pixel : pixels) {
     const auto x = static_cast<std::uint32_t>(pixel % kWidth), y = static_cast<std::uint32_t>(pixel / kWidth);
     SCOPED_TRACE("pixel " + std::to_string(x) + "," + std::to_string(y));
-    PixelHistory history(spheres(), view, x, y);
+    PixelHistory history(spheres(view.integrator), view, x, y);
     EXPECT_TRUE(same_bits(history.color(), frames[0][pixel]));
     std::size_t k = 0;
     follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
@@ -84,6 +84,12 @@ TEST(Blame, pixels_of_several_samples_are_the_frames_too) {
   expect_history(read_journal(kProject / "journals/table1.json"), {.samples = 4, .max_depth = 4, .shadow_bits = 2}, 1);
 }
 
+TEST(Blame, pixels_of_paths_are_the_frames_too) {
+  ViewOptions view{.samples = 8, .max_depth = 4, .integrator = Integrator::path};
+  view.diffuse_depth = 1;
+  expect_history(read_journal(kProject / "journals/table1.json"), view, 1);
+}
+
 const char* const kJournal = R"({"relook": "journal/1", "steps": [
   {"name": "green", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                               "value": [0.1, 0.9, 0.1, 1]}]},
@@ -97,7 +103,7 @@ const char* const kJournal = R"({"relook": "journal/1", "steps": [
 std::set<std::string> all_causes(const Journal& journal) {
   std::set<std::string> causes;
   for (const std::size_t pixel : changed_pixels(frames_of_replay(journal, {}), 12)) {
-    PixelHistory history(spheres(), {}, static_cast<std::uint32_t>(pixel % kWidth),
+    PixelHistory history(spheres(Integrator::whitted), {}, static_cast<std::uint32_t>(pixel % kWidth),
                          static_cast<std::uint32_t>(pixel / kWidth));
     follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
       const PixelStep result = history.step(event.edit(), journal.file, journal.path.parent_path());
@@ -121,7 +127,10 @@ class BlameProgram : public testing::Test {
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   void SetUp() override {
     std::ofstream(at("j.json")) << kJournal;
-    ASSERT_EQ(relook({"preprocess", kSpheres, "-o", at("cache"), "--resolution", "96x54", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(relook({"preprocess", kSpheres, "--integrator", "whitted", "-o", at("cache"), "--resolution", "96x54",
+                      "--quiet"})
+                  .exit_code,
+              0);
     ASSERT_EQ(relook({"replay", at("cache"), at("j.json"), "-o", at("run"), "--quiet"}).exit_code, 0);
   }
   ScratchFolder folder_{"blame"};

@@ -25,8 +25,8 @@ void run_relook(std::vector<std::string> arguments) {
 
 TEST(Page, table1_on_spheres_in_a_browser) {
   const ScratchFolder folder("page_table1");
-  run_relook({"preprocess", (kSourceRoot / "scenes/spheres/spheres.gltf").string(), "-o", (folder / "cache").string(),
-              "--resolution", "480x270", "--quiet"});
+  run_relook({"preprocess", (kSourceRoot / "scenes/spheres/spheres.gltf").string(), "--integrator", "whitted", "-o",
+              (folder / "cache").string(), "--resolution", "480x270", "--quiet"});
   run_relook({"replay", (folder / "cache").string(), (kSourceRoot / "journals/table1.json").string(), "-o",
               (folder / "run").string(), "--overlays", "--baseline", "--quiet"});
   use_in_browser("report_page.py", folder / "run", page_expectations(folder / "run", true), folder);
@@ -37,8 +37,8 @@ TEST(Page, table3_on_garden_in_a_browser) {
   const ProgramResult made = run_program(
       {"python3", (kSourceRoot / "scenes/generate.py").string(), "garden", (folder / "garden").string(), "1"});
   ASSERT_EQ(made.exit_code, 0) << made.output;
-  run_relook({"preprocess", (folder / "garden/garden.gltf").string(), "-o", (folder / "cache").string(), "--resolution",
-              "256x256", "--quiet"});
+  run_relook({"preprocess", (folder / "garden/garden.gltf").string(), "--integrator", "whitted", "-o",
+              (folder / "cache").string(), "--resolution", "256x256", "--quiet"});
   run_relook({"replay", (folder / "cache").string(), (kSourceRoot / "journals/table3.json").string(), "-o",
               (folder / "run").string(), "--overlays", "--quiet"});
   use_in_browser("report_page.py", folder / "run", page_expectations(folder / "run", true), folder);
@@ -60,8 +60,9 @@ TEST(Page, two_hundred_steps_on_toycar_in_a_browser) {
     steps.push_back({{"name", "step " + std::to_string(i + 1)}, {"edit", edit}});
   }
   write_text(folder / "long.json", Json{{"relook", "journal/1"}, {"steps", steps}}.dump());
-  run_relook({"preprocess", (kAssets / "toycar/ToyCar.gltf").string(), "-o", (folder / "cache").string(),
-              "--resolution", "480x270", "--camera", "auto", "--lights", "auto", "--quiet"});
+  run_relook({"preprocess", (kAssets / "toycar/ToyCar.gltf").string(), "--integrator", "whitted", "-o",
+              (folder / "cache").string(), "--resolution", "480x270", "--camera", "auto", "--lights", "auto",
+              "--quiet"});
   run_relook({"replay", (folder / "cache").string(), (folder / "long.json").string(), "-o", (folder / "run").string(),
               "--quiet"});
   EXPECT_LT(std::filesystem::file_size(folder / "run/report.html"), 5'000'000U);
@@ -90,8 +91,8 @@ class HostilePage : public testing::Test {
                      {"value", {red, 0.2, 0.1, 1}}}}}};
     };
     write_text(folder_ / "j.json", Json{{"relook", "journal/1"}, {"steps", {step(0.9), step(0.1), step(0.5)}}}.dump());
-    run_relook({"preprocess", (folder_ / "spheres/spheres.gltf").string(), "-o", (folder_ / "cache").string(),
-                "--resolution", "160x90", "--quiet"});
+    run_relook({"preprocess", (folder_ / "spheres/spheres.gltf").string(), "--integrator", "whitted", "-o",
+                (folder_ / "cache").string(), "--resolution", "160x90", "--quiet"});
     run_relook({"replay", (folder_ / "cache").string(), (folder_ / "j.json").string(), "-o", (folder_ / "run").string(),
                 "--quiet"});
     const Bytes page = read_file(folder_ / "run/report.html");

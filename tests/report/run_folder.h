@@ -52,7 +52,10 @@ class RunFolderTest : public testing::Test {
   }
   void SetUp() override {
     write_journal("j.json", steps_of_journal());
-    ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(
+        relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "72x40", "--quiet"})
+            .exit_code,
+        0);
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   void write_journal(const std::string& name, const std::vector<Json>& steps) const {

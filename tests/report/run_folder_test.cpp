@@ -81,15 +81,18 @@ TEST_F(RunFolderTest, other_frames_are_refused_by_what_differs) {
   expect_refused("run", {"half", "float"}, [&] { return replay("run", {"--float"}); });
   expect_refused("run", {"layers"}, [&] { return replay("run", {"--aovs"}); });
   fs::rename(at("c"), at("old"));
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "80x40", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "80x40", "--quiet"})
+                .exit_code,
+            0);
   expect_refused("run", {"72x40", "80x40"}, [&] { return replay("run"); });
   ASSERT_EQ(replay("run", {"--overwrite"}).exit_code, 0);
   ASSERT_EQ(replay("whole").exit_code, 0);
   expect_same_run("run", "whole");
   fs::remove_all(at("c"));
-  ASSERT_EQ(
-      relook({"preprocess", kScene, "-o", at("c"), "--resolution", "80x40", "--lights", "auto", "--quiet"}).exit_code,
-      0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "80x40", "--lights",
+                    "auto", "--quiet"})
+                .exit_code,
+            0);
   expect_refused("run", {"another scene"}, [&] { return replay("run"); });
 }
 
@@ -118,7 +121,9 @@ TEST_F(RunFolderTest, a_command_at_other_steps_of_another_journal_is_seen_before
 TEST_F(RunFolderTest, nothing_of_a_replaced_run_comes_back) {
   ASSERT_EQ(replay("run", {"--report", "none"}).exit_code, 0);
   fs::remove_all(at("c"));
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "64x36", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "--integrator", "whitted", "-o", at("c"), "--resolution", "64x36", "--quiet"})
+                .exit_code,
+            0);
   ASSERT_EQ(replay("run", {"--steps", "0-1", "--overwrite"}).exit_code, 0);
   EXPECT_EQ(report("run")["frames"].size(), 2U);
   EXPECT_EQ(pictures("run").size(), 4U);

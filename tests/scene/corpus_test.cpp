@@ -79,9 +79,9 @@ bool expect_picture_or_one_line(const fs::path& scene, const ScratchFolder& fold
   constexpr double kMostSeconds = 2;
   constexpr long kMostMegabytes = 512;
   const Usage before = children_usage();
-  const ProgramResult result =
-      run_program({"timeout", "60", RELOOK_PROGRAM, "render", scene.string(), "-o", (folder / "frame.exr").string(),
-                   "--camera", "auto", "--lights", "auto", "--resolution", "8x8", "--quiet", "--threads", "1"});
+  const ProgramResult result = run_program({"timeout", "60", RELOOK_PROGRAM, "render", scene.string(), "--integrator",
+                                            "whitted", "-o", (folder / "frame.exr").string(), "--camera", "auto",
+                                            "--lights", "auto", "--resolution", "8x8", "--quiet", "--threads", "1"});
   const Usage after = children_usage();
   EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 2)
       << scene << " exits with " << result.exit_code << ": " << result.output;

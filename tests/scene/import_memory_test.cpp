@@ -93,8 +93,8 @@ class ImportMemory : public testing::Test {
     return at(name);
   }
   [[nodiscard]] MeasuredResult render(const std::string& scene, const std::string& option = "2G") const {
-    return measure_relook({"render", scene, "-o", at("x.exr"), "--overwrite", "--quiet", "--camera", "auto", "--lights",
-                           "auto", "--resolution", "16x9", "--import-memory", option});
+    return measure_relook({"render", scene, "--integrator", "whitted", "-o", at("x.exr"), "--overwrite", "--quiet",
+                           "--camera", "auto", "--lights", "auto", "--resolution", "16x9", "--import-memory", option});
   }
   static void expect_refused(const MeasuredResult& result, const std::string& place) {
     EXPECT_EQ(result.exit_code, 4) << result.output;
@@ -174,8 +174,8 @@ TEST_F(ImportMemory, a_cache_is_held_to_it_and_names_the_file) {
   write("b.png", black_png(2048, 2040, 1));
   const std::string scene = write("two.gltf", scene_of({"a.png", "b.png"}).dump()), journal = at("j.json");
   write("j.json", R"({"relook": "journal/1", "steps": []})");
-  ASSERT_EQ(measure_relook({"preprocess", scene, "-o", at("c"), "--quiet", "--camera", "auto", "--lights", "auto",
-                            "--resolution", "16x9"})
+  ASSERT_EQ(measure_relook({"preprocess", scene, "--integrator", "whitted", "-o", at("c"), "--quiet", "--camera",
+                            "auto", "--lights", "auto", "--resolution", "16x9"})
                 .exit_code,
             0);
   const auto replay = [&](const std::string& size) {

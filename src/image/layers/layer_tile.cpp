@@ -35,6 +35,7 @@ LayerScene::LayerScene(const Scene& scene, const ViewOptions& options, const Fra
       rays(first_hits ? *first_hits : scene),
       level(tracer.build(rays)),
       grow{rays, &level, first_hits ? 1U : options.max_depth, 0} {
+  if (has_halves(options)) halves.emplace(scene, options);
   for (const Object& object : scene.objects) {
     object_ids.push_back(cryptomatte_id(object.node));
     material_ids.push_back(object.material.is_none() ? 0 : cryptomatte_id(matte_name(scene.material(object.material))));
@@ -45,10 +46,12 @@ LayerTile::LayerTile(const LayerScene& scene, ProgramTable& programs)
     : s_(scene),
       primary_(scene.rays.camera(), scene.view),
       shader_(scene.rays, programs, scene.layers.parts),
-      columns_(scene.layers.channels.size()) {}
+      columns_(scene.layers.channels.size()) {
+  if (scene.halves) half_light_.emplace(*scene.halves);
+}
 
 const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame, const TileMask* changed,
-                                       const PackedSums* sums) {
+                                       const PackedSums* sums, PackedSums& half) {
   const std::uint32_t samples = s_.view.samples;
   ChunkSize chunk(s_.grow.layout().lights);
   for (std::vector<float>& column : columns_) column.assign(rect.pixels(), 0.0F);
@@ -66,6 +69,7 @@ const LayerColumns& LayerTile::columns(const TileRect& rect, const Frame& frame,
   set_beauty(rect, frame, changed);
   settle_sums(rect.pixels());
   if (sums != nullptr) set_lights(*sums);
+  if (half_light_) set_variance(rect, frame, half);
   return columns_;
 }
 
@@ -157,6 +161,18 @@ void LayerTile::set_lights(const PackedSums& sums) {
       put(s_.layers.light_column + 3 * light, pixel, {color.x + 0.0F, color.y + 0.0F, color.z + 0.0F});
     }
   }
+}
+
+void LayerTile::set_variance(const TileRect& rect, const Frame& frame, PackedSums& half) {
+  if (half.empty()) half = PackedSums::pack(half_light_->trace(rect));
+  std::uint32_t pixel = 0;
+  for (std::uint32_t y = rect.y0; y < rect.y1; ++y)
+    for (std::uint32_t x = rect.x0; x < rect.x1; ++x, ++pixel) {
+      const Rgba difference =
+          half_light_->mean(half, pixel, s_.layers.light_colors) - frame.pixels[std::size_t{y} * frame.width + x];
+      const Rgba variance = difference * difference * half_light_->scale();
+      put(*s_.layers.variance_column, pixel, {variance.r, variance.g, variance.b});
+    }
 }
 
 void LayerTile::settle_sums(std::uint32_t pixels) {

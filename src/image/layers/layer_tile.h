@@ -7,7 +7,7 @@
 
 #include "frame/changed_pixels.h"
 #include "frame/frame_layers.h"
-#include "image/sampling.h"
+#include "image/layers/half_light.h"
 #include "trace/tree/grow.h"
 
 namespace relook {
@@ -26,6 +26,7 @@ struct LayerScene {
   Tracer tracer{false};
   Tracer::TopLevel level;
   GrowScene grow;
+  std::optional<HalfScene> halves;                      // of path, from two samples a pixel on
   std::vector<std::uint32_t> object_ids, material_ids;  // Cryptomatte's, by ObjectId
 };
 
@@ -34,9 +35,10 @@ class LayerTile {
  public:
   LayerTile(const LayerScene& scene, ProgramTable& programs);
   /// The values of a tile's layers, valid until the next call. `frame`: of the scene; `changed`: which pixels of the
-  /// tile have changed, null for none; `sums`: of the tile's light, null under Integrator::whitted.
+  /// tile have changed, null for none; `sums`: of the tile's light, null under Integrator::whitted; `half`: of the
+  /// first half of its samples, empty: they are traced, and left there.
   [[nodiscard]] const LayerColumns& columns(const TileRect& rect, const Frame& frame, const TileMask* changed,
-                                            const PackedSums* sums);
+                                            const PackedSums* sums, PackedSums& half);
 
  private:
   void trace(const TileRect& rect, std::uint32_t first_pixel, std::uint32_t last_pixel);
@@ -46,6 +48,7 @@ class LayerTile {
   void set_beauty(const TileRect& rect, const Frame& frame, const TileMask* changed);
   void settle_sums(std::uint32_t pixels);
   void set_lights(const PackedSums& sums);
+  void set_variance(const TileRect& rect, const Frame& frame, PackedSums& half);
   void put(std::size_t column, std::uint32_t pixel, std::initializer_list<float> values);
 
   const LayerScene& s_;
@@ -55,6 +58,7 @@ class LayerTile {
   TreeBlock block_;
   std::vector<SpawnedRay> rays_;
   std::vector<std::uint32_t> roots_, ids_;
+  std::optional<HalfLight> half_light_;
   std::vector<float> terms_;
   std::vector<std::vector<Rgba>> colors_;  // [part][sample of the chunk]
 };

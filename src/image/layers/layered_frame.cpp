@@ -51,6 +51,16 @@ std::vector<const TileMask*> masks_by_tile(const ChangedPixels& changed, std::si
   return masks;
 }
 
+/// Where the sums of a tile's first half are kept, empty if what is there is of other samples; null: nowhere.
+PackedSums* kept_half(const LayeredFrame& layered, std::size_t tile) {
+  if (layered.halves == nullptr || layered.versions == nullptr) return nullptr;
+  PackedSums& half = layered.halves->sums[tile];
+  std::uint32_t& version = layered.halves->versions[tile];
+  if (version != (*layered.versions)[tile]) half = PackedSums();
+  version = (*layered.versions)[tile];
+  return &half;
+}
+
 }  // namespace
 
 Bytes encode_layered_exr(const LayeredFrame& layered, const FrameMeta& meta, const Progress& progress) {
@@ -65,6 +75,10 @@ Bytes encode_layered_exr(const LayeredFrame& layered, const FrameMeta& meta, con
   require(!is_path || (layered.light_sums != nullptr && layered.light_sums->size() == tiles.size()),
           "layers of path need the sums of light of all tiles");
 
+  if (layered.halves != nullptr) {
+    layered.halves->sums.resize(tiles.size());
+    layered.halves->versions.resize(tiles.size());
+  }
   ProgramTable programs;
   Pool<LayerTile> workers;
   Pool<TileCompressor> compressors;
@@ -78,7 +92,10 @@ Bytes encode_layered_exr(const LayeredFrame& layered, const FrameMeta& meta, con
                                        ? layered.residency->use(PieceKind::light_sums, tile)
                                        : Residency::Lease();
     const PackedSums* const sums = is_path ? &(*layered.light_sums)[tile] : nullptr;
-    tiles[tile] = compressor->zip(tile_bytes(worker->columns(rect, frame, masks[tile], sums), rect, layers, order));
+    PackedSums traced;
+    PackedSums* const kept = kept_half(layered, tile);
+    const LayerColumns& columns = worker->columns(rect, frame, masks[tile], sums, kept != nullptr ? *kept : traced);
+    tiles[tile] = compressor->zip(tile_bytes(columns, rect, layers, order));
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
     progress(static_cast<double>(++done) / static_cast<double>(tiles.size()));

@@ -5,6 +5,7 @@
 #include "cache/residency/residency.h"
 #include "frame/changed_pixels.h"
 #include "frame/frame_file.h"
+#include "image/layers/half_light.h"
 #include "image/render.h"
 
 namespace relook {
@@ -17,6 +18,9 @@ struct LayeredFrame {
   PixelFormat format;            // of R, G, B and A; layers are float32
   const std::vector<PackedSums>* light_sums = nullptr;  // of path: of the frame, [tiles]; otherwise not looked at
   Residency* residency = nullptr;                       // of `light_sums`; null: all are in memory
+  /// By tile: a number that is another one whenever the sums are those of other samples, above 0; null: not known.
+  const std::vector<std::uint32_t>* versions = nullptr;
+  KeptHalves* halves = nullptr;  // from frames before, of the same versions; null: nothing is kept
 };
 
 /// The file: an OpenEXR frame as encode_exr() writes it, with the channels of FrameLayers.

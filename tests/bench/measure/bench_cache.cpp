@@ -9,6 +9,8 @@ void write_bench_cache(const BenchOptions& options, const std::filesystem::path&
   std::vector<std::string> command{RELOOK_PROGRAM,
                                    "preprocess",
                                    options.scene,
+                                   "--integrator",
+                                   "whitted",
                                    "-o",
                                    cache.string(),
                                    "--resolution",
