@@ -46,6 +46,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
       has_been_composed_(image_.light_sums.size(), 0),
       kept_rays_(image_.light_sums.size()),
       kept_terms_(image_.light_sums.size()),
+      kept_vertices_(image_.light_sums.size()),
       residency_(residency),
       lights_(std::move(lights)),
       classes_(options.atoms > 0),

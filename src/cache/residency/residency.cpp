@@ -22,6 +22,8 @@ std::string_view kind_name(PieceKind kind) {
       return "kept_rays";
     case PieceKind::kept_terms:
       return "kept_terms";
+    case PieceKind::kept_vertices:
+      return "kept_vertices";
     case PieceKind::tunnels:
       return "tunnels";
   }

@@ -25,9 +25,10 @@ enum class PieceKind : std::uint8_t {
   light_layers,
   kept_rays,
   kept_terms,
+  kept_vertices,
   tunnels
 };
-inline constexpr std::size_t kPieceKinds = 7;
+inline constexpr std::size_t kPieceKinds = 8;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
 [[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 

@@ -5,6 +5,8 @@
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "replay/path/ray_recorder.h"
+#include "replay/path/relight_tile.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/pack.h"
 
 namespace relook {
@@ -41,7 +43,7 @@ Pool<TermMemory>::Loan term_memory_of(const PathPass& pass) {
 class PathTileUpdater {
  public:
   /// `rays`: as kept; empty: nothing. `records_all`: every sample will be grown.
-  PathTileUpdater(const PathPass& pass, std::size_t tile, const TileRays& rays, bool records_all)
+  PathTileUpdater(const PathPass& pass, std::size_t tile, const TileRays& rays, bool records_all, bool makes_vertices)
       : pass_(pass),
         rays_(rays),
         use_(is_usable(rays, pass.ray_use) ? pass.ray_use : RayUse::none),
@@ -59,7 +61,8 @@ class PathTileUpdater {
         takes_(pass.change.any_taken()),
         is_shared_(!pass.change.step.touches_rays()),
         takes_or_shades_(takes_ || !pass.change.shaded.empty() || !pass.change.step.colors.reassigned.empty()),
-        misses_are_dark_(are_misses_dark()) {
+        misses_are_dark_(are_misses_dark(pass)) {
+    if (use_ == RayUse::lights && makes_vertices) result_.vertices.emplace();
     result_.fresh.tile = tile;
     if (pass.term_parameters) terms_.parameters = *pass.term_parameters;
   }
@@ -67,6 +70,8 @@ class PathTileUpdater {
   PathTileResult update(const PackedSums& sums) {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
+    result_.keeps_vertices = !recorder_.has_news() && std::ranges::find(whole_, std::uint8_t{1}) == whole_.end();
+    if (result_.vertices) result_.vertices->shrink();
     if (recorder_.has_news()) result_.rays = recorder_.take();
     const bool is_reordered =
         pass_.before.places().count != pass_.after.places().count || !std::ranges::is_sorted(pass_.change.old_of_new);
@@ -124,7 +129,7 @@ class PathTileUpdater {
     StoredTree stored{PathCursor(pass_.image.paths.words(path), {pass_.change.step.rays.old_lights.size(), 0}),
                       trees_.hits_of(sample)};
     const bool is_named = pass_.named_path[path.index()] != 0;
-    if (use_ == RayUse::lights && is_dark(stored.cursor)) return;
+    if (use_ == RayUse::lights && !result_.vertices && is_dark(stored.cursor)) return;
     const bool is_along_kept = use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named;
     if (is_along_kept) stored.kept = rays_.rays.data() + rays_.first[sample];
     if (use_ == RayUse::tests && stored.kept != nullptr) {
@@ -175,17 +180,6 @@ class PathTileUpdater {
 
   /// Is a sample whose ray from the eye meets nothing none of those that lights bring terms to?
   [[nodiscard]] bool is_dark(PathCursor cursor) const { return misses_are_dark_ && cursor.next().is_miss(); }
-  [[nodiscard]] bool are_misses_dark() const {
-    const auto& lights = pass_.grow_after.scene.light_order();
-    for (std::size_t place = 0; place < pass_.change.given.size(); ++place) {
-      if (pass_.change.given[place] == 0) continue;
-      const Light& light = pass_.after.scene().scene().light(lights[place]);
-      if (light.visible || !traits_of(light.kind).in_document) return false;
-    }
-    const SumPlaces& sums = pass_.after.places();
-    return pass_.change.afresh[sums.sky] == 0 && pass_.change.afresh[sums.background] == 0 &&
-           pass_.change.step.rays.keeps_places;
-  }
 
   /// Of a tree of kept rays that is to be shaded: weights, and the lobes of hits that lights reach.
   void complete_kept(std::uint32_t root, std::uint32_t sample) {
@@ -203,9 +197,10 @@ class PathTileUpdater {
       block.lobes.push_back(lobes);
     }
   }
-  /// By a light that is looked at.
+  /// By a light that is looked at, or, where vertices are kept, by any.
   [[nodiscard]] bool is_lit(const RayNode& node) const {
     if (node.object.is_none()) return false;
+    if (result_.vertices) return relook::is_lit(pass_.grow_after.scene.object(node.object), node);
     for (std::size_t light = 0; light < pass_.change.given.size(); ++light)
       if ((use_ == RayUse::colors || pass_.change.given[light] != 0) &&
           reaches(changed_.block.lights[node.first_light + light].state))
@@ -246,7 +241,17 @@ class PathTileUpdater {
     if (is_shared_ && takes_or_shades_ && !changed_.roots.empty())
       shader_before_->shade(changed_.block, samples_, TermSign::subtract, old_terms_, taken);
     shade(old_, *shader_before_, TermSign::subtract, old_terms_, taken);
-    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_, {}});
+    const PathShader::Wanted given{pass_.change.afresh, pass_.change.given, whole_, {}};
+    if (result_.vertices)
+      keep_vertices(given);
+    else
+      shade(changed_, *shader_after_, TermSign::add, new_terms_, given);
+  }
+  void keep_vertices(PathShader::Wanted wanted) {
+    if (changed_.roots.empty()) return;
+    wanted.weights = changed_.weights;
+    shader_after_->shade_keeping(changed_.block, samples_, new_terms_, wanted, *result_.vertices);
+    changed_.clear();
   }
 
   /// What does not change of terms is worked out once for both, and kept.
@@ -291,8 +296,9 @@ class PathTileUpdater {
 
 }  // namespace
 
-PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums, const TileRays& rays) {
-  return PathTileUpdater(pass, tile, rays, pass.updates_all).update(sums);
+PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums, const TileRays& rays,
+                                bool makes_vertices) {
+  return PathTileUpdater(pass, tile, rays, pass.updates_all, makes_vertices).update(sums);
 }
 
 PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
@@ -301,6 +307,7 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
   result.fresh.tile = tile;
   result.sums = sums;
   result.samples = terms.samples;
+  result.keeps_vertices = terms.samples == 0;
   if (terms.samples == 0) return result;
   TileSums all = sums.unpack();
   const auto memory = term_memory_of(pass);
@@ -313,7 +320,7 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
 
 PathTileResult trace_path_tile(const PathPass& pass, std::size_t tile) {
   static const TileRays kNone;
-  return PathTileUpdater(pass, tile, kNone, true).trace();
+  return PathTileUpdater(pass, tile, kNone, true, false).trace();
 }
 
 }  // namespace relook

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/pool.h"
+#include "color/path/vertex_shader.h"
 #include "image/tile_light.h"
 #include "replay/path/path_change.h"
 #include "replay/replay_parts.h"
@@ -31,6 +32,7 @@ struct PathPass {
   const GrowScene& grow_after;
   Pool<PathShader>& shaders_before;  // of the programs above
   Pool<PathShader>& shaders_after;
+  Pool<VertexShader>& vertex_shaders;  // of those after the edit
   Pool<TermMemory>& term_memory;
   std::vector<std::uint8_t> update_path{};  // by path: its trees may change, or must be packed anew
   std::vector<std::uint8_t> shade_path{};   // by path: its terms change though its tree does not
@@ -39,6 +41,7 @@ struct PathPass {
   std::vector<std::uint8_t> named_path{};  // by path: it names an object with a flag
   bool updates_all = false;                // every path is in update_path
   RayUse ray_use = RayUse::none;
+  bool uses_vertices = false;  // with RayUse::lights: may_use_vertices()
   std::optional<ParameterSet> term_parameters{};  // those of an edit for whose like terms are kept
 };
 
@@ -46,6 +49,8 @@ struct PathTileResult {
   NewSamples fresh;                // trees alone
   std::optional<TileRays> rays;    // to be kept from now on; none: as before
   std::optional<TileTerms> terms;  // likewise
+  std::optional<TileVertices> vertices;  // likewise
+  bool keeps_vertices = false;     // those that are kept still hold
   bool has_other_weights = false;  // than those that are kept with rays
   PackedSums sums;                 // of the tile as it is now
   bool has_changed = false;
@@ -53,9 +58,10 @@ struct PathTileResult {
   GrowCounters counters;
 };
 
-/// `sums`, `rays`: of the tile before the edit. Requires: the tile's hits are there.
+/// `sums`, `rays`: of the tile before the edit. `makes_vertices`: are vertices to be kept from now on, where they can be?
+/// Requires: the tile's hits are there.
 [[nodiscard]] PathTileResult update_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
-                                              const TileRays& rays);
+                                              const TileRays& rays, bool makes_vertices);
 /// The same of a tile whose terms are kept for what the edit changes.
 [[nodiscard]] PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const PackedSums& sums,
                                                const TileTerms& terms);
