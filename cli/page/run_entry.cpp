@@ -15,7 +15,7 @@ constexpr std::size_t kMostParts = 64;                                          
 constexpr int kDeepest = 8;
 constexpr std::size_t kMostDetailBytes = 8192;  // of one entry
 
-constexpr std::array<std::string_view, 32> kColumns{"/step",
+constexpr std::array<std::string_view, 34> kColumns{"/step",
                                                     "/pixels_changed",
                                                     "/samples_affected",
                                                     "/regions_visited",
@@ -37,7 +37,9 @@ constexpr std::array<std::string_view, 32> kColumns{"/step",
                                                     "/resident/sample_colors",
                                                     "/resident/light_sums",
                                                     "/resident/kept_rays",
+                                                    "/resident/kept_segments",
                                                     "/resident/kept_terms",
+                                                    "/resident/kept_vertices",
                                                     "/resident/color_trees",
                                                     "/resident/groups",
                                                     "/resident/tunnels",

@@ -54,7 +54,9 @@ void trace_step(const StepReport& step, std::chrono::steady_clock::time_point st
                                    {"sample_colors", resident.sample_colors},
                                    {"light_sums", resident.light_sums},
                                    {"kept_rays", resident.kept_rays},
+                                   {"kept_segments", resident.kept_segments},
                                    {"kept_terms", resident.kept_terms},
+                                   {"kept_vertices", resident.kept_vertices},
                                    {"color_trees", resident.color_trees},
                                    {"groups", resident.groups},
                                    {"tunnels", resident.tunnels}});

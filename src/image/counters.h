@@ -40,8 +40,8 @@ struct Seconds {
 
 /// Bytes held in memory by kind.
 struct Resident {
-  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, light_sums = 0, kept_rays = 0, kept_terms = 0,
-                color_trees = 0, groups = 0, tunnels = 0;
+  std::uint64_t ray_paths = 0, ray_trees = 0, sample_colors = 0, light_sums = 0, kept_rays = 0, kept_segments = 0,
+                kept_terms = 0, kept_vertices = 0, color_trees = 0, groups = 0, tunnels = 0;
   std::uint64_t total = 0;  // the frame included
 };
 

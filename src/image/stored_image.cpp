@@ -58,6 +58,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
       kept_rays_(image_.light_sums.size()),
       kept_segments_(image_.light_sums.size()),
       kept_terms_(image_.light_sums.size()),
+      kept_vertices_(image_.light_sums.size()),
       residency_(residency),
       lights_(std::move(lights)),
       classes_(options.atoms > 0),
@@ -145,10 +146,13 @@ Resident StoredImage::resident() const {
   for (const PackedSums& sums : image_.light_sums) resident.light_sums += sums.bytes();
   for (const TileLayers& layers : layers_) resident.light_sums += layers.bytes();
   for (const TileRays& rays : kept_rays_) resident.kept_rays += rays.bytes();
+  for (const TileSegments& segments : kept_segments_) resident.kept_segments += segments.bytes();
   for (const TileTerms& terms : kept_terms_) resident.kept_terms += terms.bytes();
+  for (const auto& vertices : kept_vertices_) resident.kept_vertices += vertices ? vertices->bytes() : 0;
   const std::uint64_t frame = image_.frame.pixels.size() * sizeof(Rgba);
   resident.total = resident.ray_paths + resident.ray_trees + resident.sample_colors + resident.light_sums +
-                   resident.kept_rays + resident.kept_terms + resident.groups + resident.tunnels + frame;
+                   resident.kept_rays + resident.kept_segments + resident.kept_terms + resident.kept_vertices +
+                   resident.groups + resident.tunnels + frame;
   return resident;
 }
 

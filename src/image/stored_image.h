@@ -3,6 +3,7 @@
 #pragma once
 #include <atomic>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,8 @@
 #include "trace/update/kept_segments.h"
 
 namespace relook {
+
+struct TileVertices;  // color/path/tile_vertices.h
 
 /// Has a pixel not changed? Zeros differ by their sign.
 [[nodiscard]] inline bool same_bits(const Rgba& a, const Rgba& b) { return std::memcmp(&a, &b, sizeof(Rgba)) == 0; }
@@ -104,6 +107,9 @@ class StoredImage {
   /// The same of terms for the next edit of parameters; PieceKind::kept_terms.
   [[nodiscard]] const TileTerms& kept_terms(std::size_t tile) const { return kept_terms_[tile]; }
   void keep_terms(std::size_t tile, TileTerms terms);
+  /// The same of vertices for the next edit of lights; PieceKind::kept_vertices. Null: none.
+  [[nodiscard]] const TileVertices* kept_vertices(std::size_t tile) const { return kept_vertices_[tile].get(); }
+  void keep_vertices(std::size_t tile, TileVertices vertices);
 
  private:
   [[nodiscard]] PathLayout layout() const { return {lights_.size(), image_.view.shadow_bits}; }
@@ -113,7 +119,8 @@ class StoredImage {
   void add_pieces();
   void add_derived();
   template <class Piece>
-  void keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece, double seconds);
+  void keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece, std::size_t bytes,
+                    double seconds);
   [[nodiscard]] TileLayers::Planes planes(std::size_t tile, std::span<const LightColor> colors, TileLayers& layers,
                                           TileLayers::Working& working);
   void note_layers(std::size_t tile);
@@ -139,6 +146,7 @@ class StoredImage {
   std::vector<TileRays> kept_rays_;              // by tile; of paths
   std::vector<TileSegments> kept_segments_;      // likewise
   std::vector<TileTerms> kept_terms_;            // likewise
+  std::vector<std::shared_ptr<const TileVertices>> kept_vertices_;  // likewise
   Residency& residency_;
   std::vector<LightId> lights_;
   PathIndex index_;

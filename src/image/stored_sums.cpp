@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "color/path/tile_vertices.h"
 #include "image/stored_image.h"
 
 namespace relook {
@@ -24,30 +25,33 @@ void StoredImage::add_derived() {
   residency_.add_kind(PieceKind::kept_rays, kept_rays_.size(), handler_of_derived(kept_rays_));
   residency_.add_kind(PieceKind::kept_segments, kept_segments_.size(), handler_of_derived(kept_segments_));
   residency_.add_kind(PieceKind::kept_terms, kept_terms_.size(), handler_of_derived(kept_terms_));
+  residency_.add_kind(PieceKind::kept_vertices, kept_vertices_.size(), handler_of_derived(kept_vertices_));
 }
 
 template <class Piece>
 void StoredImage::keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece,
-                               double seconds) {
+                               std::size_t bytes, double seconds) {
   if (residency_.is_watched())
     residency_.forget(kind, tile);
   else
     pieces[tile] = Piece();
-  if (piece.empty() || !residency_.is_worth_room(kind, tile, piece.bytes())) return;
+  if (bytes == 0 || !residency_.is_worth_room(kind, tile, bytes)) return;
   pieces[tile] = std::move(piece);
-  residency_.set(kind, tile, pieces[tile].bytes(), seconds);
+  residency_.set(kind, tile, bytes, seconds);
 }
 
 void StoredImage::keep_rays(std::size_t tile, TileRays rays) {
   constexpr double kSecondsPerRay = 1e-6;  // to expand it again
   const double seconds = static_cast<double>(rays.rays.size()) * kSecondsPerRay;
-  keep_derived(PieceKind::kept_rays, tile, kept_rays_, std::move(rays), seconds);
+  const std::size_t bytes = rays.empty() ? 0 : rays.bytes();
+  keep_derived(PieceKind::kept_rays, tile, kept_rays_, std::move(rays), bytes, seconds);
 }
 
 void StoredImage::keep_segments(std::size_t tile, TileSegments segments) {
   constexpr double kSecondsPerByte = 1e-8;  // to look at trees again instead
   const double seconds = static_cast<double>(segments.bytes()) * kSecondsPerByte;
-  keep_derived(PieceKind::kept_segments, tile, kept_segments_, std::move(segments), seconds);
+  const std::size_t bytes = segments.empty() ? 0 : segments.bytes();
+  keep_derived(PieceKind::kept_segments, tile, kept_segments_, std::move(segments), bytes, seconds);
 }
 
 void StoredImage::forget_weights(std::size_t tile) {
@@ -64,7 +68,16 @@ void StoredImage::forget_weights(std::size_t tile) {
 void StoredImage::keep_terms(std::size_t tile, TileTerms terms) {
   constexpr double kSecondsPerSample = 1e-5;  // to expand and shade it again
   const double seconds = static_cast<double>(terms.samples) * kSecondsPerSample;
-  keep_derived(PieceKind::kept_terms, tile, kept_terms_, std::move(terms), seconds);
+  const std::size_t bytes = terms.empty() ? 0 : terms.bytes();
+  keep_derived(PieceKind::kept_terms, tile, kept_terms_, std::move(terms), bytes, seconds);
+}
+
+void StoredImage::keep_vertices(std::size_t tile, TileVertices vertices) {
+  constexpr double kSecondsPerHit = 1e-6;  // to restore it along kept rays
+  const double seconds = vertices.hits * kSecondsPerHit;
+  const std::size_t bytes = vertices.empty() ? 0 : sizeof(TileVertices) + vertices.bytes();
+  auto kept = bytes > 0 ? std::make_shared<const TileVertices>(std::move(vertices)) : nullptr;
+  keep_derived(PieceKind::kept_vertices, tile, kept_vertices_, std::move(kept), bytes, seconds);
 }
 
 void StoredImage::keep_sums(std::size_t tile, PackedSums sums) {

@@ -45,8 +45,9 @@ constexpr std::array<std::string_view, 15> kCounts{"samples_total",
                                                    "step"};
 constexpr std::array<std::string_view, 5> kClasses{"base", "color", "optical", "geometric", "mixed"};
 constexpr std::array<std::string_view, 7> kPhases{"classify", "select", "test", "update", "evaluate", "write", "total"};
-constexpr std::array<std::string_view, 10> kParts{"ray_paths", "ray_trees",  "sample_colors", "light_sums", "kept_rays",
-                                                  "kept_terms", "color_trees", "groups",       "tunnels",    "total"};
+constexpr std::array<std::string_view, 12> kParts{"ray_paths",   "ray_trees",     "sample_colors", "light_sums",
+                                                  "kept_rays",   "kept_segments", "kept_terms",    "kept_vertices",
+                                                  "color_trees", "groups",        "tunnels",       "total"};
 constexpr std::array<std::string_view, 6> kMoved{"ray_trees",   "sample_colors", "light_sums",
                                                  "color_trees", "tunnels",       "total"};
 constexpr std::array<std::string_view, 4> kCulledBy{"tunnels", "boxes", "dropped", "class"};

@@ -1,11 +1,13 @@
 // What is kept between steps of the path integrator: trees that are grown along kept rays are those that are expanded
-// with textures and point sets, and exchanged terms are those of trees that are shaded before and after an edit, bit for
-// bit.
+// with textures and point sets, exchanged terms are those of trees that are shaded before and after an edit, and lights
+// give kept vertices the terms that they give trees, bit for bit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <functional>
 
+#include "color/path/light_terms.h"
+#include "color/path/vertex_shader.h"
 #include "image/sampling.h"
 #include "image/tile_light.h"
 #include "path_checks.h"
@@ -285,6 +287,85 @@ TEST(LeavesScene, has_every_place_where_factors_come_together) {
   EXPECT_GT(passed, 20U);
   EXPECT_GT(opened, 100U) << "coverage of what is behind coverage";
 }
+
+/// Of lights whose terms vertices give, and of the sky.
+struct VertexLights {
+  VertexLights(const ColorScene& scene, const SumPlaces& places) : sums(places.count, 0) {
+    sums[places.sky] = 1;
+    for (std::size_t place = 0; place < scene.light_order().size(); ++place) {
+      const Light& light = scene.scene().light(scene.light_order()[place]);
+      const bool shows = light.visible && scene.light(place).shape;
+      lights.push_back(light.kind != LightKind::emission && !shows ? 1 : 0);
+    }
+  }
+  std::vector<std::uint8_t> sums, lights;
+};
+
+/// Terms of a light at a batch's vertices, for what stands between them in the trees.
+std::vector<LitTerm> lit_terms(const Trees& trees, const TileVertices::Batch& batch,
+                               std::span<const std::uint32_t> node_of_hit, std::uint32_t place) {
+  const RayLight& light = trees.rays.light(place);
+  std::vector<LitTerm> terms;
+  for (std::size_t k = 0; k < batch.vertices.size(); ++k) {
+    const LitVertex& vertex = batch.vertices[k];
+    const LightLink& link = trees.block.lights[trees.block.nodes[node_of_hit[vertex.hit]].first_light + place];
+    if (!reaches(link.state)) continue;
+    RayNode node(kNoNode, 0, {});
+    vertex.restore(node);
+    VertexLobes lobes;
+    if (vertex.has_lobes())
+      lobes = vertex.other_lobes != kNoNode ? batch.other_lobes[vertex.other_lobes] : vertex.lobes.restored();
+    const bool has_lobes = vertex.has_lobes() && light.is_soft();
+    auto term = light_term(
+        trees.rays,
+        {node, has_lobes ? &lobes : nullptr, std::span(trees.block.filters).subspan(link.first, link.filters), nullptr},
+        place);
+    if (!term) continue;
+    term->columns = batch.values.data() + k * batch.columns;
+    terms.push_back({*term, vertex.weight, vertex.scale, vertex.pixel, link.first, link.filters});
+  }
+  return terms;
+}
+
+class KeptVertices : public testing::TestWithParam<TestScene> {};
+
+TEST_P(KeptVertices, are_given_the_terms_of_their_trees) {
+  const SceneState state = with_integrator(test_scene(GetParam(), 24, 18), Integrator::path);
+  const Trees trees(state, deep_view());
+  TilePrograms programs(trees.rays);
+  const SumPlaces& places = programs.places();
+  PathShader shader(trees.rays, programs.path(), places);
+  TileSums all(places.count, trees.rect.pixels()), expected = all, kept = all, found = all;
+  shader.shade(trees.block, trees.view.samples, TermSign::add, all);
+  const std::vector<Color> weights(shader.weights().begin(), shader.weights().end());
+  const VertexLights asked(trees.rays, places);
+  const PathShader::Wanted wanted{asked.sums, asked.lights, {}, weights};
+  shader.shade(trees.block, trees.view.samples, TermSign::add, expected, wanted);
+  TileVertices vertices;
+  shader.shade_keeping(trees.block, trees.view.samples, kept, wanted, vertices);
+  EXPECT_EQ(kept, expected);
+
+  std::vector<std::uint32_t> node_of_hit;
+  for (std::uint32_t i = 0; i < trees.block.nodes.size(); ++i)
+    if (!trees.block.nodes[i].object.is_none()) node_of_hit.push_back(i);
+  ASSERT_EQ(vertices.hits, node_of_hit.size());
+  VertexShader vertex_shader(trees.rays, programs.path(), places);
+  std::size_t lit = 0;
+  for (std::uint32_t place = 0; place < asked.lights.size(); ++place) {
+    if (asked.lights[place] == 0) continue;
+    for (const TileVertices::Batch& batch : vertices.batches) {
+      const std::vector<LitTerm> terms = lit_terms(trees, batch, node_of_hit, place);
+      vertex_shader.add_lit(batch, trees.block, terms, found);
+      lit += terms.size();
+    }
+  }
+  vertex_shader.add_met(vertices.leaving, true, {asked.sums, asked.lights}, found);
+  vertex_shader.add_met(vertices.crossing, false, {asked.sums, asked.lights}, found);
+  EXPECT_EQ(found, expected);
+  EXPECT_GT(lit, trees.roots.size() / 4) << "there is something to see";
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, KeptVertices, testing::ValuesIn(kScenes));
 
 }  // namespace
 }  // namespace relook

@@ -215,6 +215,49 @@ std::vector<MatrixRow> between_colors_rows() {
   };
 }
 
+/// Vertices are kept for the next light that moves: whatever comes between such edits.
+std::vector<MatrixRow> between_moves_rows() {
+  const auto window = [](double x) { return row("the window moves", set("/nodes/Window/translation", {x, 1.4, 2.4})); };
+  const auto turned = [](double angle) { return row("the sky turns", set(kSky + "rotation", angle)); };
+  return {
+      window(0.5),
+      window(0.4),
+      window(0.3),
+      turned(0.4),
+      turned(0.8),
+      row("another sky", set(kSky + "image", "SecondSkyImage")),
+      row("a colour", set("/materials/Ground/pbrMetallicRoughness/baseColorFactor", {0.9, 0.5, 0.2, 1})),
+      window(0.2),
+      window(0.1),
+      turned(1.2),
+      row("a bucket of roughness", set("/materials/Coated/pbrMetallicRoughness/roughnessFactor", 0.9)),
+      window(0),
+      window(0.1),
+      row("colour and light", set("/materials/Ground/pbrMetallicRoughness/baseColorFactor", {0.2, 0.5, 0.2, 1}),
+          set("/nodes/Window/translation", {0.2, 1.4, 2.4})),
+      window(0.3),
+      window(0.4),
+      row("an object moves", set("/nodes/Coated/translation", {0.6, 0.4, 1})),
+      window(0.5),
+      window(0.4),
+      row("a light more", add("/nodes/Another", placed_light("EXT_lights_area", "Window", {-1.2, 2.2, 2}))),
+      row("one more, first", add("/nodes/Aaa", placed_light("EXT_lights_area", "Dish", {0, 2.5, 1}))),
+      row("the size of two", set("/lights/Window/size", 0.7)),
+      row("who is lit", set("/nodes/Window/extras/relook/excludes", Json::array({"Ball", "Pane"}))),
+      window(0.6),
+      row("a lamp moves", set("/nodes/Lamp/translation", {1.2, 3, 2})),
+      row("two lights and the sky", set("/nodes/Lamp/translation", {1, 3, 2}),
+          set("/nodes/Dish/translation", {0, 2.4, 1}), set(kSky + "rotation", -0.3)),
+      row("a light less", removed("/nodes/Another")),
+      window(0.5),
+      row("one less, one more", removed("/nodes/Aaa"),
+          add("/nodes/Zzz", placed_light("EXT_lights_area", "Dish", {0.3, 2.5, 1}))),
+      row("glass clearer", set("/materials/Glass/pbrMetallicRoughness/baseColorFactor", {0.5, 0.9, 0.9, 1})),
+      window(0.4),
+      turned(0.1),
+  };
+}
+
 struct LightRows {
   const char* name;
   std::vector<MatrixRow> (*rows)();
@@ -235,7 +278,9 @@ INSTANTIATE_TEST_SUITE_P(Path, LightEdits,
                                          LightRows{"order", order_rows, 1}, LightRows{"order", order_rows, 4},
                                          LightRows{"sky", sky_rows, 1}, LightRows{"sky", sky_rows, 4},
                                          LightRows{"emission", emission_rows, 2},
-                                         LightRows{"between_colours", between_colors_rows, 2}),
+                                         LightRows{"between_colours", between_colors_rows, 2},
+                                         LightRows{"between_moves", between_moves_rows, 1},
+                                         LightRows{"between_moves", between_moves_rows, 4}),
                          [](const testing::TestParamInfo<LightRows>& rows) {
                            return std::string(rows.param.name) + "_" + std::to_string(rows.param.samples);
                          });

@@ -187,9 +187,8 @@ TEST(Report, has_every_name_of_version_1) {
     EXPECT_TRUE(step.contains(name)) << name;
   for (const char* name : {"classify", "select", "test", "update", "evaluate", "write", "total"})
     EXPECT_TRUE(step["seconds"].contains(name)) << name;
-  for (const char* name :
-       {"ray_paths", "ray_trees", "sample_colors", "light_sums", "kept_rays", "kept_terms", "color_trees", "groups",
-        "tunnels", "total"})
+  for (const char* name : {"ray_paths", "ray_trees", "sample_colors", "light_sums", "kept_rays", "kept_segments",
+                           "kept_terms", "kept_vertices", "color_trees", "groups", "tunnels", "total"})
     EXPECT_TRUE(step["resident"].contains(name)) << name;
   EXPECT_EQ(step["drag_frame"], 2);
   EXPECT_EQ(step["frame"], "frames/0003_02.exr");

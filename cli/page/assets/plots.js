@@ -31,8 +31,8 @@ class Plots {
   all() {
     const full = this.report.full_render_seconds;
     const stages = ["classify", "select", "test", "update", "evaluate", "write"];
-    const kinds = [["ray_paths", "ray paths"], ["ray_trees", "ray trees"], ["sample_colors", "sample colours"], ["light_sums", "sums of light"], ["kept_rays", "kept rays"],
-      ["kept_terms", "kept terms"], ["color_trees", "colour trees"],
+    const kinds = [["ray_paths", "ray paths"], ["ray_trees", "ray trees"], ["sample_colors", "sample colours"], ["light_sums", "sums of light"], ["kept_rays", "kept rays"], ["kept_segments", "kept segments"],
+      ["kept_terms", "kept terms"], ["kept_vertices", "kept vertices"], ["color_trees", "colour trees"],
       ["groups", "groups"], ["tunnels", "tunnels"]];
     const moves = ["evicted", "rebuilt", "reloaded"].map((what) => [what, this.column((step) => step[what].total)]);
     const shown = [

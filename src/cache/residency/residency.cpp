@@ -24,6 +24,8 @@ std::string_view kind_name(PieceKind kind) {
       return "kept_segments";
     case PieceKind::kept_terms:
       return "kept_terms";
+    case PieceKind::kept_vertices:
+      return "kept_vertices";
     case PieceKind::tunnels:
       return "tunnels";
   }

@@ -26,6 +26,7 @@ enum class PieceKind : std::uint8_t {
   kept_rays,
   kept_segments,
   kept_terms,
+  kept_vertices,
   tunnels
 };
 inline constexpr std::size_t kPieceKinds = 8;

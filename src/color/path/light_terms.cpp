@@ -20,11 +20,11 @@ enum class AlongSegment : std::uint8_t {
   turns,  // it is bent or blurred, or dimmed otherwise
   ends    // there are more surfaces with holes than rays go straight on through
 };
-AlongSegment ray_along(const ColorScene& scene, const TreeBlock& block, const RayNode& node, const LightLink& link) {
+AlongSegment ray_along(const ColorScene& scene, const RayNode& node, std::span<const FilterNode> filters) {
   std::uint32_t straight = straight_behind(node.ray.path);
   bool turns = false;
-  for (std::uint32_t f = 0; f < link.filters; ++f) {
-    const RayObject& object = scene.object(block.filters[link.first + f].object);
+  for (const FilterNode& filter : filters) {
+    const RayObject& object = scene.object(filter.object);
     if (object.optics.bent) return AlongSegment::turns;
     turns = turns || object.turns;
     if (passes_by_coverage(*object.material)) ++straight;
@@ -71,21 +71,31 @@ float lamp_share(const Light& light, const Point& at) {
 std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& block, std::uint32_t index,
                                     std::uint32_t place) {
   const RayNode& node = block.nodes[index];
+  const LightLink& link = block.lights[node.first_light + place];
+  const VertexLobes* lobes = node.lobes != kNoNode ? &block.lobes[node.lobes] : nullptr;
+  const LightSample* sample = link.sample != kNoNode ? &block.samples[link.sample] : nullptr;
+  auto term =
+      light_term(scene, {node, lobes, std::span(block.filters).subspan(link.first, link.filters), sample}, place);
+  if (term) term->node = index;
+  return term;
+}
+
+std::optional<LightTerm> light_term(const ColorScene& scene, const LitHit& hit, std::uint32_t place) {
+  const RayNode& node = hit.node;
   const RayLight& ray_light = scene.light(place);
   const Light& light = scene.scene().light(scene.light_order()[place]);
   if (light.excludes(node.object)) return std::nullopt;
   std::optional<LightTerm> term;
   if (!ray_light.is_soft()) {
     term = lamp_term(node, ray_light, light);
-  } else if (node.lobes != kNoNode) {
-    const LightLink& link = block.lights[node.first_light + place];
-    const auto sample = link.sample != kNoNode ? block.samples[link.sample] : sample_light(ray_light, node);
+  } else if (hit.lobes != nullptr) {
+    const auto sample = hit.sample != nullptr ? *hit.sample : sample_light(ray_light, node);
     if (!sample) return std::nullopt;
     term.emplace();
     term->way = sample->way;
     term->radiance = radiance_of(ray_light, *sample) * lamp_share(light, node.point.position);
-    const VertexLobes& lobes = block.lobes[node.lobes];
-    const AlongSegment along = ray_along(scene, block, node, link);
+    const VertexLobes& lobes = *hit.lobes;
+    const AlongSegment along = ray_along(scene, node, hit.filters);
     // No ray of a reflecting lobe leads below the triangle; samples may, where the smooth surface is lit.
     const bool is_above = sample->way.dot(node.point.geometric) > 0;
     constexpr std::array kLobes{Lobe::diffuse, Lobe::specular, Lobe::coat, Lobe::transmission};
@@ -106,7 +116,6 @@ std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& bl
     term->weights = {0, 0, 0, term->weights[3]};
   else
     term->weights[3] = 0;
-  term->node = index;
   term->light = place;
   return term;
 }

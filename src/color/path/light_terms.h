@@ -15,6 +15,16 @@ namespace relook {
 [[nodiscard]] std::optional<LightTerm> light_term(const ColorScene& scene, const TreeBlock& block, std::uint32_t node,
                                                   std::uint32_t place);
 
+/// A hit that a light reaches.
+struct LitHit {
+  const RayNode& node;
+  const VertexLobes* lobes;             // null: it has none
+  std::span<const FilterNode> filters;  // on the segment
+  const LightSample* sample;            // null: it is taken anew, of a light that has samples
+};
+/// The same; the term does not know its node.
+[[nodiscard]] std::optional<LightTerm> light_term(const ColorScene& scene, const LitHit& hit, std::uint32_t place);
+
 /// How much a light that a ray meets counts beside samples of it at the hit that sent the ray. `density`: with which
 /// those have the ray's direction.
 [[nodiscard]] float met_weight(const RayNode& node, const RayLight& light, float density);

@@ -74,8 +74,9 @@ class PathRunner {
   void run(const TreeBlock& block, bool are_filters, std::span<const LightTerm> terms, const Done& done) {
     for_each_batch(block, are_filters, terms,
                    [&](std::uint32_t number, const PathBatch& batch, std::span<const std::uint32_t> places) {
-                     KernelRun<PathBatch> kernel(bound_[number].program->kernel, parameters(number), batch,
-                                                 places.size(), scratch_);
+                     const Parameters values = parameters(number);
+                     KernelRun<PathBatch> kernel(bound_[number].program->kernel, values, batch, places.size(),
+                                                 scratch_);
                      for (std::size_t first = 0; first < places.size(); first += kLanes) {
                        const std::size_t lanes = std::min(kLanes, places.size() - first);
                        kernel.run(first, lanes);

@@ -3,8 +3,11 @@
 #include <algorithm>
 
 #include "color/path/light_terms.h"
+#include "color/path/met_lights.h"
 #include "color/path/path_runner.h"
 #include "color/path/term_keeper.h"
+#include "color/path/vertex_keeper.h"
+#include "color/path/vertex_shader.h"
 #include "trace/light/emission_source.h"
 
 namespace relook {
@@ -16,22 +19,17 @@ struct HitColumns {
   float coverage = 0;
 };
 
-/// What is multiplied by coverage counts so much.
-float surface_scale(const RayNode& node) { return node.coverage.sees_surface() ? node.coverage.scale() : 0.0F; }
-
 bool is_black(const Color& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 }  // namespace
 
 struct PathShader::Impl {
   Impl(const ColorScene& s, PathPrograms& programs, const SumPlaces& of_sums)
-      : scene(s), places(of_sums), runner(s, programs) {
+      : scene(s), places(of_sums), met(s), runner(s, programs) {
     emission_of.resize(scene.scene().materials.size(), kNoNode);
     for (std::uint32_t place = 0; place < scene.light_order().size(); ++place) {
       const Light& light = scene.scene().light(scene.light_order()[place]);
       if (light.kind == LightKind::emission) emission_of[light.material.index()] = place;
-      if (light.kind == LightKind::suns) suns = place;
-      if (scene.light(place).shape) shapes.push_back(place);
     }
   }
 
@@ -43,10 +41,17 @@ struct PathShader::Impl {
     sums = &tile;
     is_added = sign == TermSign::add;
     keeper = of_terms;
-    shade_filters();
+    shade_filters(trees, runner, tints);
     find_weights();
     add_own_terms();
     add_light_terms();
+  }
+  void shade_keeping(const TreeBlock& trees, std::uint32_t samples, TileSums& tile, const Wanted& asked,
+                     TileVertices& kept) {
+    keeps_vertices = true;
+    shade(trees, samples, TermSign::add, tile, asked, nullptr);
+    keeps_vertices = false;
+    keep_vertices(scene, {trees, weights, lit_columns, first_lit_column, lit_column_count, samples}, runner, kept);
   }
   void keep(const TreeBlock& trees, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept) {
     TermKeeper of_terms(scene, parameters, trees, samples, kept);
@@ -104,20 +109,6 @@ struct PathShader::Impl {
     return !is_black(weights[i]) || (keeper != nullptr && keeper->is_below(i));
   }
 
-  void shade_filters() {
-    if (block->filters.empty()) return;
-    tints.resize(block->filters.size());
-    runner.begin();
-    for (std::uint32_t i = 0; i < block->filters.size(); ++i) {
-      const FilterNode& filter = block->filters[i];
-      runner.add(i, runner.number_of(runner.key_of(PathPiece::filter, filter.object, filter.point.inside)));
-    }
-    runner.run(*block, true, {}, [&](const auto& kernel, const PathKey&, std::span<const std::uint32_t> chosen) {
-      for (std::size_t lane = 0; lane < chosen.size(); ++lane)
-        tints[runner.item(chosen[lane])] = from_lanes(kernel, 0, lane);
-    });
-  }
-
   /// The weight of every ray, and what hits bring themselves; then what of unit light at each node comes to the eye.
   /// Where weights are known, only what lit hits have for lights.
   void find_weights() {
@@ -127,11 +118,12 @@ struct PathShader::Impl {
     columns.resize(nodes.size());
     lit_columns.clear();
     first_lit_column.resize(nodes.size());
+    lit_column_count.resize(nodes.size());
     runner.begin();
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
       if (nodes[i].object.is_none()) continue;
       PathKey key = runner.key_of(PathPiece::surface, nodes[i].object, nodes[i].point.inside);
-      key.lit = is_lit(nodes[i]);
+      key.lit = is_lit(nodes[i]) || (keeps_vertices && is_vertex(scene, nodes[i]));
       if (is_known && !key.lit) continue;
       key.gathers = nodes[i].ray.path.gathers;
       if (!is_known) key.children = children_of(nodes[i]);
@@ -189,8 +181,10 @@ struct PathShader::Impl {
   void keep_lit_columns(const KernelRun<PathBatch>& kernel, std::size_t first, std::span<const std::uint32_t> chosen) {
     const std::size_t count = kernel.outputs() - first, start = lit_columns.size();
     lit_columns.resize(start + count * chosen.size());
-    for (std::size_t lane = 0; lane < chosen.size(); ++lane)
+    for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
       first_lit_column[runner.item(chosen[lane])] = start + lane * count;
+      lit_column_count[runner.item(chosen[lane])] = static_cast<std::uint32_t>(count);
+    }
     for (std::size_t k = 0; k < count; ++k) {
       const float* from = kernel.output(first + k);
       for (std::size_t lane = 0; lane < chosen.size(); ++lane) lit_columns[start + lane * count + k] = from[lane];
@@ -202,7 +196,9 @@ struct PathShader::Impl {
       const RayNode& node = block->nodes[i];
       if (is_whole(node) && !node.object.is_none()) add_coverage(i);
       if (!counts(i)) continue;
-      for (const std::uint32_t place : shapes) add_crossed(node, i, place);
+      met.cross(
+          node, [&](std::uint32_t place) { return is_light_wanted(place, node); },
+          [&](std::uint32_t place, const Color& unit) { add(place, i, unit); });
       if (node.object.is_none())
         add_surroundings(node, i);
       else
@@ -222,38 +218,13 @@ struct PathShader::Impl {
       sums->subtract_coverage(pixel_of(i), coverage);
   }
 
-  void add_crossed(const RayNode& node, std::uint32_t i, std::uint32_t place) {
-    const Light& light = scene.scene().light(scene.light_order()[place]);
-    if (!is_light_wanted(place, node) || !may_meet(node, scene.light(place), light)) return;
-    if (const auto radiance = crossed(node, scene.light(place), light)) add(place, i, Color(*radiance));
-  }
-
   /// Of a ray that leaves the scene.
   void add_surroundings(const RayNode& node, std::uint32_t i) {
-    const PathState& path = node.ray.path;
-    if (path.is_eye && scene.scene().environment.background) {
-      if (is_wanted(places.background, node)) add(places.background, i, background(node.ray.direction));
-      return;
-    }
-    const RayLight& light = scene.light(suns);
-    if (!is_wanted(places.sky, node) && !is_light_wanted(suns, node)) return;
-    const Direction way = to_image(node.ray.direction, light.sine, light.cosine);
-    const EnvironmentLight::Parts parts = scene.environment()->parts(way);
-    if (is_wanted(places.sky, node)) add(places.sky, i, parts.sky);
-    if (is_black(parts.suns) || !is_light_wanted(suns, node)) return;
-    if (!may_meet(node, light, scene.scene().light(scene.light_order()[suns]))) return;
-    const float weight = path.density > 0 ? met_weight(node, light, scene.environment()->density(way)) : 1.0F;
-    add(suns, i, parts.suns * weight);
-  }
-
-  /// Radiance for unit tint.
-  [[nodiscard]] Color background(const Direction& way) const {
-    const Background& behind = *scene.scene().environment.background;
-    if (!behind.image) return {1, 1, 1};
-    const float turns = behind.rotation * 0.15915494F;
-    const Direction local = to_image(way, portable_sin_turns(turns), portable_cos_turns(turns));
-    const Rgba texel = sample(*behind.image, environment_uv(local), 0, {Wrap::repeat, Wrap::clamp});
-    return {texel.r, texel.g, texel.b};
+    const MetLights::UnitLight unit = met.surroundings(
+        node, {is_wanted(places.background, node), is_wanted(places.sky, node), is_light_wanted(met.suns(), node)});
+    if (unit.has.background) add(places.background, i, unit.background);
+    if (unit.has.sky) add(places.sky, i, unit.sky);
+    if (unit.has.suns) add(met.suns(), i, unit.suns);
   }
 
   void add_hit(const RayNode& node, std::uint32_t i) {
@@ -326,8 +297,7 @@ struct PathShader::Impl {
   const ColorScene& scene;
   const SumPlaces& places;
   std::vector<std::uint32_t> emission_of;  // by MaterialId: place in the light order; kNoNode: it emits nothing
-  std::vector<std::uint32_t> shapes;       // places of lights with a shape
-  std::uint32_t suns = 0;                  // its place
+  MetLights met;
 
   const TreeBlock* block = nullptr;
   std::uint32_t samples_of_pixel = 1;
@@ -335,13 +305,15 @@ struct PathShader::Impl {
   bool is_added = true;
   Wanted wanted;
   TermKeeper* keeper = nullptr;
+  bool keeps_vertices = false;
 
   PathRunner runner;
   std::vector<LightTerm> terms;
   std::vector<Color> weights, tints;  // by node, by filter
   std::vector<HitColumns> columns;    // by node
   std::vector<float> lit_columns;     // of lit nodes, those of a node in a row: what programs of lights read
-  std::vector<std::size_t> first_lit_column;  // by node, if it is lit
+  std::vector<std::size_t> first_lit_column;    // by node, if it is lit
+  std::vector<std::uint32_t> lit_column_count;  // likewise
   std::vector<float> open_shares;     // by node: what of the eye's straight ray gets there
 };
 
@@ -352,6 +324,11 @@ PathShader::~PathShader() = default;
 void PathShader::shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums,
                        const Wanted& wanted) {
   impl_->shade(block, samples, sign, sums, wanted, nullptr);
+}
+
+void PathShader::shade_keeping(const TreeBlock& block, std::uint32_t samples, TileSums& sums, const Wanted& wanted,
+                               TileVertices& vertices) {
+  impl_->shade_keeping(block, samples, sums, wanted, vertices);
 }
 
 void PathShader::keep(const TreeBlock& block, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept) {

@@ -8,6 +8,7 @@
 #include "color/path/kept_terms.h"
 #include "color/path/path_programs.h"
 #include "color/path/sum_places.h"
+#include "color/path/tile_vertices.h"
 #include "light/sums/tile_sums.h"
 
 namespace relook {
@@ -29,6 +30,10 @@ class PathShader {
   };
   /// The terms of all trees of a block, whose nodes' samples count within the tile, `samples` a pixel.
   void shade(const TreeBlock& block, std::uint32_t samples, TermSign sign, TileSums& sums, const Wanted& wanted = {});
+  /// Adds terms of lights, and appends the block's vertices to `vertices`. Requires: weights are known, all vertices
+  /// have their lobes.
+  void shade_keeping(const TreeBlock& block, std::uint32_t samples, TileSums& sums, const Wanted& wanted,
+                     TileVertices& vertices);
   /// Fills `kept`, which is empty, with the terms of a block that an edit of some parameters changes, in place of adding
   /// any. Requires: the parameters are of materials, no fields of kMappingMask among them.
   void keep(const TreeBlock& block, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept);

@@ -7,6 +7,7 @@
 #include "edit/apply.h"
 #include "image/image_pieces.h"
 #include "replay/path/path_tile.h"
+#include "replay/path/relight_tile.h"
 #include "trace/box_range.h"
 #include "trace/tree/path_cursor.h"
 
@@ -150,14 +151,16 @@ class PathUpdate {
     const GrowScene grow_before = grow_scene(before, nullptr, stored_.image().view, 0);
     const GrowScene grow_after = grow_scene(parts_.rays, level, stored_.image().view, 0, &parts_.objects);
     Pool<PathShader> shaders_before, shaders_after;
+    Pool<VertexShader> vertex_shaders;
     Pool<TermMemory> term_memory;
     PathPass pass{change_,    stored_.image(), programs_before, programs_after, grow_before,
-                  grow_after, shaders_before,  shaders_after,   term_memory};
+                  grow_after, shaders_before,  shaders_after,   vertex_shaders, term_memory};
     PathSelection(stored_, change_, parts_.state.scene()).select(pass);
     if (change_.step.touches_segments() && !change_.step.rays.lights_changed) {
       pass.selection = std::move(selection);
       if (may_write_segments(pass)) pass.segment_grid = segment_grid(parts_.rays, pass.selection);
     }
+    pass.uses_vertices = may_use_vertices(pass);
     if (pass.ray_use == RayUse::colors && !change_.relights()) pass.term_parameters = term_parameters();
     std::vector<PathTileResult> results(stored_.image().trees.size());
     parallel_for(results.size(), [&](std::size_t tile) { update(pass, tile, results[tile]); });
@@ -232,6 +235,13 @@ class PathUpdate {
     return pass.term_parameters && !terms.empty() && terms.parameters.contains(*pass.term_parameters);
   }
 
+  /// Is a tile without kept vertices to keep those of the step?
+  [[nodiscard]] bool makes_vertices(const PathPass& pass, std::size_t tile) const {
+    constexpr std::size_t kBytesOfHit = 256;  // about
+    const std::size_t bytes = stored_.image().trees[tile].hits.size() * kBytesOfHit;
+    return pass.uses_vertices && parts_.residency.is_worth_room(PieceKind::kept_vertices, tile, bytes);
+  }
+
   void update(const PathPass& pass, std::size_t tile, PathTileResult& result) {
     std::optional<Residency::Lease> trees;
     {
@@ -245,15 +255,23 @@ class PathUpdate {
       const auto sums = parts_.residency.use(PieceKind::light_sums, tile);
       const auto rays = parts_.residency.use(PieceKind::kept_rays, tile);
       const auto terms = parts_.residency.use(PieceKind::kept_terms, tile);
+      const auto vertices = parts_.residency.use(PieceKind::kept_vertices, tile);
+      const TileVertices* kept = stored_.kept_vertices(tile);
       const PackedSums& sums_before = stored_.image().light_sums[tile];
       if (may_recolor(pass, stored_.kept_terms(tile)))
         result = recolor_path_tile(pass, tile, sums_before, stored_.kept_terms(tile));
+      else if (pass.uses_vertices && kept != nullptr && has_hits(stored_.image().trees[tile]))
+        result = relight_path_tile(pass, tile, sums_before, *kept);
       else if (has_hits(stored_.image().trees[tile]) && !is_sooner_traced(pass, tile, touched))
-        result = update_path_tile(
-            pass, tile, {sums_before, stored_.kept_rays(tile), stored_.kept_segments(tile), std::move(touched)});
+        result = update_path_tile(pass, tile,
+                                  {sums_before, stored_.kept_rays(tile), stored_.kept_segments(tile),
+                                   std::move(touched), makes_vertices(pass, tile)});
       else
         result = trace_path_tile(pass, tile);
     }
+    if (result.vertices || !result.keeps_vertices)
+      stored_.keep_vertices(tile, std::move(result.vertices).value_or(TileVertices()));
+    result.vertices.reset();
     if (result.terms) stored_.keep_terms(tile, std::move(*result.terms));
     if (result.has_other_weights) stored_.forget_weights(tile);
     result.terms.reset();

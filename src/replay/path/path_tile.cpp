@@ -5,7 +5,9 @@
 #include "base/parallel.h"
 #include "image/sampling.h"
 #include "replay/path/ray_recorder.h"
+#include "replay/path/relight_tile.h"
 #include "replay/path/segment_recorder.h"
+#include "trace/shadow/shadow_segment.h"
 #include "trace/tree/pack.h"
 
 namespace relook {
@@ -86,7 +88,8 @@ class PathTileUpdater {
         takes_(pass.change.any_taken()),
         is_shared_(!pass.change.step.touches_rays()),
         takes_or_shades_(takes_ || !pass.change.shaded.empty() || !pass.change.step.colors.reassigned.empty()),
-        misses_are_dark_(are_misses_dark()) {
+        misses_are_dark_(are_misses_dark(pass)) {
+    if (use_ == RayUse::lights && kept.makes_vertices) result_.vertices.emplace();
     result_.fresh.tile = tile;
     if (pass.term_parameters) terms_.parameters = *pass.term_parameters;
     changed_.block.keeps_lines = segments_.is_on();
@@ -95,6 +98,8 @@ class PathTileUpdater {
   PathTileResult update() {
     for (std::uint32_t sample = 0; sample < trees_.paths.size(); ++sample) update_sample(sample);
     flush();
+    result_.keeps_vertices = !recorder_.has_news() && std::ranges::find(whole_, std::uint8_t{1}) == whole_.end();
+    if (result_.vertices) result_.vertices->shrink();
     if (recorder_.has_news()) result_.rays = recorder_.take();
     take_segments();
     const bool is_remapped = is_reordered(pass_);
@@ -157,7 +162,7 @@ class PathTileUpdater {
     const SpawnedRay primary = primaries_.ray(rect_, sample);
     StoredTree stored{PathCursor(pass_.image.paths.words(path), {pass_.change.step.rays.old_lights.size(), 0}),
                       trees_.hits_of(sample)};
-    if (use_ == RayUse::lights && is_dark(stored.cursor)) return;
+    if (use_ == RayUse::lights && !result_.vertices && is_dark(stored.cursor)) return;
     const bool is_along_kept = use_ != RayUse::none && !(use_ == RayUse::tests && shades) && !is_named;
     if (is_along_kept) stored.kept = rays_.rays.data() + rays_.first[sample];
     if (use_ == RayUse::tests && stored.kept != nullptr) {
@@ -219,17 +224,6 @@ class PathTileUpdater {
 
   /// Is a sample whose ray from the eye meets nothing none of those that lights bring terms to?
   [[nodiscard]] bool is_dark(PathCursor cursor) const { return misses_are_dark_ && cursor.next().is_miss(); }
-  [[nodiscard]] bool are_misses_dark() const {
-    const auto& lights = pass_.grow_after.scene.light_order();
-    for (std::size_t place = 0; place < pass_.change.given.size(); ++place) {
-      if (pass_.change.given[place] == 0) continue;
-      const Light& light = pass_.after.scene().scene().light(lights[place]);
-      if (light.visible || !traits_of(light.kind).in_document) return false;
-    }
-    const SumPlaces& sums = pass_.after.places();
-    return pass_.change.afresh[sums.sum_of[sums.sky]] == 0 && pass_.change.afresh[sums.sum_of[sums.background]] == 0 &&
-           pass_.change.step.rays.keeps_places;
-  }
 
   /// Of a tree of kept rays that is to be shaded: weights, and the lobes of hits that lights reach.
   void complete_kept(std::uint32_t root, std::uint32_t sample) {
@@ -247,9 +241,10 @@ class PathTileUpdater {
       block.lobes.push_back(lobes);
     }
   }
-  /// By a light that is looked at.
+  /// By a light that is looked at, or, where vertices are kept, by any.
   [[nodiscard]] bool is_lit(const RayNode& node) const {
     if (node.object.is_none()) return false;
+    if (result_.vertices) return relook::is_lit(pass_.grow_after.scene.object(node.object), node);
     for (std::size_t light = 0; light < pass_.change.given.size(); ++light)
       if ((use_ == RayUse::colors || pass_.change.given[light] != 0) &&
           reaches(changed_.block.lights[node.first_light + light].state))
@@ -290,7 +285,17 @@ class PathTileUpdater {
     if (is_shared_ && takes_or_shades_ && !changed_.roots.empty())
       shader_before_->shade(changed_.block, samples_, TermSign::subtract, old_terms_, taken);
     shade(old_, *shader_before_, TermSign::subtract, old_terms_, taken);
-    shade(changed_, *shader_after_, TermSign::add, new_terms_, {pass_.change.afresh, pass_.change.given, whole_, {}});
+    const PathShader::Wanted given{pass_.change.afresh, pass_.change.given, whole_, {}};
+    if (result_.vertices)
+      keep_vertices(given);
+    else
+      shade(changed_, *shader_after_, TermSign::add, new_terms_, given);
+  }
+  void keep_vertices(PathShader::Wanted wanted) {
+    if (changed_.roots.empty()) return;
+    wanted.weights = changed_.weights;
+    shader_after_->shade_keeping(changed_.block, samples_, new_terms_, wanted, *result_.vertices);
+    changed_.clear();
   }
 
   /// What does not change of terms is worked out once for both, and kept.
@@ -347,6 +352,7 @@ std::optional<PathTileResult> leave_path_tile(const PathPass& pass, std::size_t 
   if (touched.empty() || is_reordered(pass) || pass.change.any_afresh()) return std::nullopt;
   PathTileResult result;
   result.fresh.tile = tile;
+  result.keeps_vertices = true;
   const std::vector<PathId>& paths = pass.image.trees[tile].paths;
   for (std::uint32_t sample = 0; sample < paths.size(); ++sample) {
     if (!is_left_alone(pass, touched, sample, paths[sample])) return std::nullopt;
@@ -361,6 +367,7 @@ PathTileResult recolor_path_tile(const PathPass& pass, std::size_t tile, const P
   result.fresh.tile = tile;
   result.sums = sums;
   result.samples = result.reused = terms.samples;
+  result.keeps_vertices = terms.samples == 0;
   if (terms.samples == 0) return result;
   TileSums all = sums.unpack();
   const auto memory = term_memory_of(pass);

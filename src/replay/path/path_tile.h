@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/pool.h"
+#include "color/path/vertex_shader.h"
 #include "image/tile_light.h"
 #include "replay/path/path_change.h"
 #include "replay/replay_parts.h"
@@ -32,6 +33,7 @@ struct PathPass {
   const GrowScene& grow_after;
   Pool<PathShader>& shaders_before;  // of the programs above
   Pool<PathShader>& shaders_after;
+  Pool<VertexShader>& vertex_shaders;  // of those after the edit
   Pool<TermMemory>& term_memory;
   std::vector<std::uint8_t> update_path{};  // by path: its trees may change, or must be packed anew
   std::vector<std::uint8_t> shade_path{};   // by path: its terms change though its tree does not
@@ -42,6 +44,7 @@ struct PathPass {
   RayUse ray_use = RayUse::none;
   SegmentSelection selection{};  // of a step that moves something and no light
   SegmentGrid segment_grid{};    // in which such a step writes segments down; empty: it does not
+  bool uses_vertices = false;    // with RayUse::lights: may_use_vertices()
   std::optional<ParameterSet> term_parameters{};  // those of an edit for whose like terms are kept
 };
 
@@ -51,6 +54,7 @@ struct KeptOfTile {
   const TileRays& rays;                  // empty: not kept
   const TileSegments& segments;          // empty: not kept
   std::vector<std::uint8_t> touched{};   // by sample: may the selection touch its tree? Empty: not known
+  bool makes_vertices = false;           // are vertices to be kept from now on, where they can be?
 };
 
 struct PathTileResult {
@@ -58,6 +62,8 @@ struct PathTileResult {
   std::optional<TileRays> rays;    // to be kept from now on; none: as before
   std::optional<TileTerms> terms;  // likewise
   std::optional<TileSegments> segments;  // likewise; empty: they do not hold any more
+  std::optional<TileVertices> vertices;  // likewise
+  bool keeps_vertices = false;           // those that are kept still hold
   bool has_other_weights = false;  // than those that are kept with rays
   PackedSums sums;                 // of the tile as it is now
   bool has_changed = false;
