@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/system/memory.h"
+#include "color/path/tile_vertices.h"
 #include "image/sampling.h"
 #include "trace/tree/pack.h"
 
