@@ -75,6 +75,7 @@ StoredImage::StoredImage(Image image, std::vector<LightId> lights, std::vector<O
     segments_ += tile_segments_[tile];
     samples_ += image_.trees[tile].paths.size();
   }
+  for (std::vector<std::uint64_t>& tiles : bytes_derived_) tiles.resize(image_.light_sums.size());
   regions_.build_groups(image_, class_of());
   if (residency_.is_watched()) {
     add_pieces();

@@ -1,6 +1,7 @@
 // What is kept of an image through a series of edits: paths, trees, colours, frame, and what helps to find things in
 // them. Brought up to date with what the passes over its tiles have found.
 #pragma once
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <memory>
@@ -118,6 +119,8 @@ class StoredImage {
   }
   void add_pieces();
   void add_derived();
+  /// Is there room for what a tile is to keep of a kind, in place of what it kept?
+  [[nodiscard]] bool may_keep(PieceKind kind, std::size_t tile, std::uint64_t bytes);
   template <class Piece>
   void keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece, std::size_t bytes,
                     double seconds);
@@ -143,6 +146,8 @@ class StoredImage {
   std::vector<std::uint8_t> has_been_composed_;  // by tile: from the sums as they are
   std::vector<std::uint32_t> sum_versions_;      // by tile, from 1 on: of the samples behind its sums
   Pool<LayerWork> layer_work_;
+  std::atomic<std::uint64_t> derived_bytes_ = 0;  // of the four below, which have a limit of their own without --memory
+  std::array<std::vector<std::uint64_t>, kPieceKinds> bytes_derived_;  // by kind and tile
   std::vector<TileRays> kept_rays_;              // by tile; of paths
   std::vector<TileSegments> kept_segments_;      // likewise
   std::vector<TileTerms> kept_terms_;            // likewise

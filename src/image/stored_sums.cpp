@@ -3,6 +3,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/system/memory.h"
 #include "color/path/tile_vertices.h"
 #include "image/stored_image.h"
 
@@ -18,6 +19,9 @@ PieceHandler handler_of_derived(std::vector<Piece>& pieces) {
   return handler;
 }
 
+/// Without --memory derived pieces take at most a half of what the machine has.
+constexpr std::uint64_t kDerivedShare = 2;
+
 }  // namespace
 
 void StoredImage::add_derived() {
@@ -28,6 +32,15 @@ void StoredImage::add_derived() {
   residency_.add_kind(PieceKind::kept_vertices, kept_vertices_.size(), handler_of_derived(kept_vertices_));
 }
 
+bool StoredImage::may_keep(PieceKind kind, std::size_t tile, std::uint64_t bytes) {
+  if (residency_.is_limited()) return residency_.is_worth_room(kind, tile, bytes);
+  std::uint64_t& here = bytes_derived_[static_cast<std::size_t>(kind)][tile];
+  derived_bytes_ -= std::exchange(here, 0);
+  if (derived_bytes_ + bytes > machine_memory_bytes() / kDerivedShare) return false;
+  derived_bytes_ += here = bytes;
+  return true;
+}
+
 template <class Piece>
 void StoredImage::keep_derived(PieceKind kind, std::size_t tile, std::vector<Piece>& pieces, Piece piece,
                                std::size_t bytes, double seconds) {
@@ -35,7 +48,7 @@ void StoredImage::keep_derived(PieceKind kind, std::size_t tile, std::vector<Pie
     residency_.forget(kind, tile);
   else
     pieces[tile] = Piece();
-  if (bytes == 0 || !residency_.is_worth_room(kind, tile, bytes)) return;
+  if (!may_keep(kind, tile, bytes) || bytes == 0) return;
   pieces[tile] = std::move(piece);
   residency_.set(kind, tile, bytes, seconds);
 }

@@ -4,11 +4,52 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <string>
 
 namespace relook {
+namespace {
+
+/// The number in a file, if it begins with one ("max" is none).
+std::uint64_t number_in(const std::string& file) {
+  std::ifstream stream(file);
+  std::uint64_t number = 0;
+  return stream >> number ? number : std::numeric_limits<std::uint64_t>::max();
+}
+
+/// The least limit of a control group and those above it. `path`: of the group, "/a/b".
+std::uint64_t least_limit(const std::string& root, std::string path, const char* file) {
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  while (true) {
+    least = std::min(least, number_in(root + path + "/" + file));
+    if (path.empty()) return least;
+    path.resize(path.find_last_of('/') == std::string::npos ? 0 : path.find_last_of('/'));
+  }
+}
+
+}  // namespace
+
+std::uint64_t machine_memory_bytes() {
+  static const std::uint64_t bytes = [] {
+    auto least = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+                 static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    std::ifstream groups("/proc/self/cgroup");  // "0::/path", of version 1 "7:memory:/path"
+    for (std::string line; std::getline(groups, line);) {
+      const std::size_t first = line.find(':'), second = line.find(':', first + 1);
+      if (first == std::string::npos || second == std::string::npos) continue;
+      const std::string names = line.substr(first + 1, second - first - 1), path = line.substr(second + 1);
+      if (names.empty()) least = std::min(least, least_limit("/sys/fs/cgroup", path, "memory.max"));
+      if (names == "memory") least = std::min(least, least_limit("/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
+    }
+    return least;
+  }();
+  return bytes;
+}
 
 std::uint64_t resident_set_bytes() {
   static std::atomic<int> kept = -1;  // stays open: opening takes longest

@@ -10,6 +10,9 @@ namespace relook {
 /// The bytes of the resident set now. Not for a child of fork(): it would be told of the process that asked first.
 [[nodiscard]] std::uint64_t resident_set_bytes();
 
+/// What this process may use at most: the machine's memory, or less where its control groups say so.
+[[nodiscard]] std::uint64_t machine_memory_bytes();
+
 /// Keeps a value until the process ends, and its memory with it: for what would take long to take apart for nothing.
 template <class T>
 void keep_to_the_end(T value) {

@@ -29,7 +29,7 @@ enum class PieceKind : std::uint8_t {
   kept_vertices,
   tunnels
 };
-inline constexpr std::size_t kPieceKinds = 8;
+inline constexpr std::size_t kPieceKinds = static_cast<std::size_t>(PieceKind::tunnels) + 1;
 [[nodiscard]] std::string_view kind_name(PieceKind kind);
 [[nodiscard]] constexpr std::size_t index_of(PieceKind kind) { return static_cast<std::size_t>(kind); }
 
