@@ -3,7 +3,6 @@
 #include <memory>
 #include <utility>
 
-#include "base/system/memory.h"
 #include "color/path/tile_vertices.h"
 #include "image/stored_image.h"
 
@@ -19,9 +18,6 @@ PieceHandler handler_of_derived(std::vector<Piece>& pieces) {
   return handler;
 }
 
-/// Without --memory derived pieces take at most a half of what the machine has.
-constexpr std::uint64_t kDerivedShare = 2;
-
 }  // namespace
 
 void StoredImage::add_derived() {
@@ -36,7 +32,7 @@ bool StoredImage::may_keep(PieceKind kind, std::size_t tile, std::uint64_t bytes
   if (residency_.is_limited()) return residency_.is_worth_room(kind, tile, bytes);
   std::uint64_t& here = bytes_derived_[static_cast<std::size_t>(kind)][tile];
   derived_bytes_ -= std::exchange(here, 0);
-  if (derived_bytes_ + bytes > machine_memory_bytes() / kDerivedShare) return false;
+  if (derived_bytes_ + bytes > residency_.most_derived_bytes()) return false;
   derived_bytes_ += here = bytes;
   return true;
 }

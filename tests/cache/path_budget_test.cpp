@@ -87,6 +87,31 @@ INSTANTIATE_TEST_SUITE_P(Shares, PathBudget,
                            return std::string(budget.param.name);
                          });
 
+/// What steps keep for the next has a ceiling where nothing else has.
+TEST(PathBudgetOfDerived, is_kept_to_and_changes_no_frame) {
+  const auto kept = [](const Resident& resident) {
+    return resident.kept_rays + resident.kept_segments + resident.kept_terms + resident.kept_vertices;
+  };
+  std::vector<std::uint64_t> most;
+  for (const std::uint64_t ceiling : {std::uint64_t{1} << 40, std::uint64_t{100000}, std::uint64_t{0}}) {
+    ResidencyOptions options;
+    options.most_derived_bytes = ceiling;
+    Replayer replayer = path_replayer(wide_scene(), path_view(2), options);
+    Dice dice(seed_of_run() + 9);
+    most.push_back(0);
+    for (std::size_t k = 1; k <= kSteps; ++k) {
+      const Change change = random_path_change(replayer.state().document().look, dice);
+      const std::string what = std::to_string(ceiling) + " step " + std::to_string(k) + " " + Json(change.forward).dump();
+      expect_path_step(replayer, edit_of_list(change.forward), what, {false, false});
+      most.back() = std::max(most.back(), kept(replayer.resident()));
+      ASSERT_LE(kept(replayer.resident()), ceiling + ceiling / 4) << what << ", but for what vectors hold beside";
+    }
+  }
+  EXPECT_GT(most[0], most[1]);
+  EXPECT_GT(most[1], 0U);
+  EXPECT_EQ(most[2], 0U);
+}
+
 TEST(PathCache, of_an_edited_document_goes_on_as_the_replay_does) {
   const ScratchFolder folder("path_cache");
   Dice dice(seed_of_run() + 5);

@@ -35,6 +35,7 @@ inline constexpr std::size_t kPieceKinds = static_cast<std::size_t>(PieceKind::t
 
 struct ResidencyOptions {
   std::optional<std::uint64_t> memory_bytes;  // of the whole process; none: no limit
+  std::uint64_t most_derived_bytes = machine_memory_bytes() / 2;  // of kept rays and the like where there is no limit
   std::uint64_t reserve_bytes = 0;            // left to a change beside pieces until one has been measured
   EvictionPolicy policy = EvictionPolicy::weight;
   std::filesystem::path spill_folder;  // "": nothing is spilled
@@ -124,6 +125,7 @@ class Residency {
 
   [[nodiscard]] EvictionPolicy policy() const { return options_.policy; }
   [[nodiscard]] bool is_limited() const { return options_.memory_bytes.has_value(); }
+  [[nodiscard]] std::uint64_t most_derived_bytes() const { return options_.most_derived_bytes; }
   /// From now on sizes and uses are noted without a limit, too, because pieces may be missing.
   void track() { tracks_pieces_ = true; }
   /// Does anyone care about sizes, uses and what is missing?
