@@ -217,8 +217,10 @@ TEST(GoldenBits, are_those_of_the_table) {
   }
   Bits bits = bits_of_all_programs();
   take_bits_of_garden(golden.bits, bits);
-  // Tables of other processors may be older, and have less rows.
-  const std::vector<std::string> different = different_rows(golden.bits, bits, is_own && !is_writing);
+  // Tables of processors that were not at hand are older than the rows of paths.
+  const bool has_all = std::ranges::any_of(golden.bits, [](const auto& row) { return row.first.starts_with("path, "); });
+  if (!is_writing && !has_all) std::printf("SKIPPED: the table has no paths; their bits are NOT tested\n");
+  const std::vector<std::string> different = different_rows(golden.bits, bits, has_all && !is_writing);
   if (is_own && !different.empty())
     FAIL() << first_of(different)
            << "\nWhere pixels, paths or hits have other bits than before, raise kArithmeticVersion in "
