@@ -244,7 +244,7 @@ TEST_F(ForgedNotes, the_report_around_the_entries) {
            {"\"interrupted\": false", "\"interrupted\": true"},
            {"\"0-5\"", "\"0-4294967295\""},
            {"\"camera\": \"", "\"camera\": \"x"},
-           {"\"samples\": 1", "\"samples\": -1"},
+           {"\"samples\": 64", "\"samples\": -64"},
            {"\"full_render_seconds\": null", "\"full_render_seconds\": []"},
            {"    \"frames/0001.exr\": \"", "    \"frames/0001.exr\": \"0"},
            {"\n  }\n}\n", ",\n    \"frames/0099.exr\": \"0\"\n  }\n}\n"},
