@@ -84,7 +84,7 @@ class SegmentScan : public testing::Test {
 TEST_F(SegmentScan, misses_nothing_that_ray_tests_look_at) {
   std::cout << "RELOOK_SEED=" << seed_of_run() << "\n";
   std::size_t near = 0, told = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 200; ++round) {
     const std::size_t count = 1 + dice_.below(6);
     std::vector<Box> boxes;
     for (std::size_t k = 0; k < count; ++k) boxes.push_back(random_box(8, dice_.chance(0.3) ? 0.05 : 5));
