@@ -102,7 +102,7 @@ TEST_F(SegmentScan, misses_nothing_that_ray_tests_look_at) {
       EXPECT_TRUE(found[sample] != 0 || !is_tested) << "round " << round << ", segment " << sample;
     }
   }
-  EXPECT_GT(near, 1000U);
+  EXPECT_GT(near, 800U);
   EXPECT_LT(told, near + near / 4) << "and hardly more than these";
 }
 
