@@ -84,13 +84,14 @@ class SegmentScan : public testing::Test {
 TEST_F(SegmentScan, misses_nothing_that_ray_tests_look_at) {
   std::cout << "RELOOK_SEED=" << seed_of_run() << "\n";
   std::size_t near = 0, told = 0;
-  for (int round = 0; round < 60; ++round) {
+  for (int round = 0; round < 200; ++round) {
     const std::size_t count = 1 + dice_.below(6);
     std::vector<Box> boxes;
-    for (std::size_t k = 0; k < count; ++k) boxes.push_back(random_box(8, dice_.chance(0.3) ? 0.05 : 2));
-    const SegmentSelection selection = selection_of(boxes, dice_.chance(0.5) ? 1.0F : 40.0F);
+    for (std::size_t k = 0; k < count; ++k) boxes.push_back(random_box(8, dice_.chance(0.3) ? 0.05 : 5));
+    const SegmentSelection selection = selection_of(boxes, dice_.chance(0.5) ? 1.0F : 8.0F);
     block_.clear();
-    segments_ = TileSegments(SegmentGrid(Box(Point(-12, -12, -12), Point(12, 12, 12)), wider(selection.of[0].all, 0.5F)));
+    const Box scene(Point(-12, -12, -12), Point(12, 12, 12));
+    segments_ = TileSegments(SegmentGrid(scene, wider(selection.of[0].all, 0.5F)));
     for (int k = 0; k < 700; ++k) add(random_ray());
     ASSERT_TRUE(segments_.can_tell(selection));
     const std::vector<std::uint8_t> found = touched(selection);
@@ -101,8 +102,8 @@ TEST_F(SegmentScan, misses_nothing_that_ray_tests_look_at) {
       EXPECT_TRUE(found[sample] != 0 || !is_tested) << "round " << round << ", segment " << sample;
     }
   }
-  EXPECT_GT(near, 1000U);
-  EXPECT_LT(told, near + near / 8) << "and hardly more than these";
+  EXPECT_GT(near, 800U);
+  EXPECT_LT(told, near + near / 4) << "and hardly more than these";
 }
 
 TEST_F(SegmentScan, tells_small_things_in_large_scenes) {
@@ -291,7 +292,8 @@ INSTANTIATE_TEST_SUITE_P(Seeded, PathMoves,
                          testing::Values(MovesCase{TestScene::lights, 1}, MovesCase{TestScene::lights, 4},
                                          MovesCase{TestScene::spheres, 2}, MovesCase{TestScene::cards, 2},
                                          MovesCase{TestScene::study, 2}, MovesCase{TestScene::lights, 3, true},
-                                         MovesCase{TestScene::spheres, 3, true}, MovesCase{TestScene::lights, 2, false, 0.5},
+                                         MovesCase{TestScene::spheres, 3, true},
+                                         MovesCase{TestScene::lights, 2, false, 0.5},
                                          MovesCase{TestScene::cards, 3, false, 0}));
 
 TEST(PathMovesCounters, tell_what_is_left_alone) {
