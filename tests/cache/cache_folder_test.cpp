@@ -54,7 +54,8 @@ class CacheFolder : public testing::Test {
   /// As it is taken by most tests.
   [[nodiscard]] ProgramResult preprocess(const std::string& output, std::vector<std::string> flags = {}) const {
     flags.insert(flags.begin(),
-                 {"preprocess", kScene, "-o", at(output), "--resolution", "40x24", "--progress", "none"});
+                 {"preprocess", kScene, "-o", at(output), "--integrator", "whitted", "--resolution",
+                  "40x24", "--progress", "none"});
     return relook(flags);
   }
   void make_cache() const {
@@ -128,7 +129,8 @@ TEST_F(CacheFolder, another_cache_is_replaced_only_when_asked) {
                           {{"--look", at("look.json"), "--samples", "2", "--resolution", "8x8"},
                            "of another scene, resolution (40x24) and --samples (1);"}};
   for (const Other& other : others) {
-    std::vector<std::string> command{"preprocess", kScene, "-o", at("c"), "--progress", "none"};
+    std::vector<std::string> command{"preprocess", kScene,         "-o",         at("c"),
+                                     "--integrator", "whitted", "--progress", "none"};
     if (std::ranges::find(other.flags, "--resolution") == other.flags.end())
       command.insert(command.end(), {"--resolution", "40x24"});
     command.insert(command.end(), other.flags.begin(), other.flags.end());

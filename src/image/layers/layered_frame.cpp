@@ -53,7 +53,7 @@ std::vector<const TileMask*> masks_by_tile(const ChangedPixels& changed, std::si
 
 /// Where the sums of a tile's first half are kept, empty if what is there is of other samples; null: nowhere.
 PackedSums* kept_half(const LayeredFrame& layered, std::size_t tile) {
-  if (layered.halves == nullptr || layered.versions == nullptr) return nullptr;
+  if (layered.halves == nullptr || layered.versions == nullptr || layered.versions->empty()) return nullptr;
   PackedSums& half = layered.halves->sums[tile];
   std::uint32_t& version = layered.halves->versions[tile];
   if (version != (*layered.versions)[tile]) half = PackedSums();
