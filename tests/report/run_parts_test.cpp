@@ -255,7 +255,9 @@ TEST_F(RunFolderTest, memory_does_not_grow_with_steps) {
   }
   write_journal("long.json", steps);
   fs::remove_all(at("c"));
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "16x9", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--integrator", "whitted", "--resolution", "16x9", "--quiet"})
+                .exit_code,
+            0);
   ASSERT_EQ(replay("run", {"--quiet"}, "long.json").exit_code, 0);
   const Json entries = report("run")["steps"];
   ASSERT_EQ(entries.size(), 1501U);
