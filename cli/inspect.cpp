@@ -117,14 +117,15 @@ void inspect_cache(const Arguments& arguments, Console& console) {
                                      : "";
   char lens[64] = "";
   if (content.contains("lens"))
-    std::snprintf(lens, sizeof lens, ", lens %g:%g", content["lens"][0].get<double>(), content["lens"][1].get<double>());
+    std::snprintf(lens, sizeof lens, ", lens %g:%g", content["lens"][0].get<double>(),
+                  content["lens"][1].get<double>());
   console.line(arguments.inputs[0] + ": scene " + content["scene"].get<std::string>() + ", camera " +
                content["camera"]["name"].get<std::string>() + ", " + content["camera"]["width"].dump() + "x" +
                content["camera"]["height"].dump() + ", " + content["samples"].dump() + " samples a pixel, " +
-               content["integrator"].get<std::string>() + ", depth " + content["max_depth"].dump() + depths + lens + ", " +
-               content["objects"].dump() + " objects, " +
-               content["lights"].dump() + " lights, " + std::to_string(content["files"].size()) + " files, " +
-               std::to_string(sizes.total_bytes) + " bytes" + noise_text(noise_of(manifest)));
+               content["integrator"].get<std::string>() + ", depth " + content["max_depth"].dump() + depths + lens +
+               ", " + content["objects"].dump() + " objects, " + content["lights"].dump() + " lights, " +
+               std::to_string(content["files"].size()) + " files, " + std::to_string(sizes.total_bytes) + " bytes" +
+               noise_text(noise_of(manifest)));
   // The rows of the paper's Table 2 that are kept on disk; groups follow from the paths of the samples.
   const Json& pieces = content["pieces"];
   const auto count = [&](const char* kind) { return std::to_string(pieces[kind].get<std::uint64_t>()); };

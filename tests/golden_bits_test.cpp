@@ -1,6 +1,7 @@
 // The bits of frames, ray paths and hits, over all programs: test scenes under tests/golden_edits.json, the project's
-// own scenes under its journals, with one and several samples and shadow bits, and of both integrators. A table in tests/golden_bits has a hash of
-// each, and names the arithmetic (cache/arithmetic.h) under which they hold: there is a table for each kind of processor.
+// own scenes under its journals, with one and several samples and shadow bits, and of both integrators. A table in
+// tests/golden_bits has a hash of each, and names the arithmetic (cache/arithmetic.h) under which they hold: there is a
+// table for each kind of processor.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -53,8 +54,8 @@ using Bits = std::map<std::string, std::string>;
 /// The bits of a scene after preprocess and after each frame of a journal.
 void take_bits(const std::string& name, SceneState state, ViewOptions view, const Journal& journal, Bits& bits) {
   const std::string integrator = view.integrator == Integrator::path ? "path, " : "";
-  const std::string start =
-      integrator + name + ", " + std::to_string(view.samples) + " samples, " + std::to_string(view.shadow_bits) + " shadow bits: ";
+  const std::string start = integrator + name + ", " + std::to_string(view.samples) + " samples, " +
+                            std::to_string(view.shadow_bits) + " shadow bits: ";
   int frames = 0;
   const auto note = [&](const Image& image, const std::string& what) {
     char number[16];
@@ -218,7 +219,8 @@ TEST(GoldenBits, are_those_of_the_table) {
   Bits bits = bits_of_all_programs();
   take_bits_of_garden(golden.bits, bits);
   // Tables of processors that were not at hand are older than the rows of paths.
-  const bool has_all = std::ranges::any_of(golden.bits, [](const auto& row) { return row.first.starts_with("path, "); });
+  const bool has_all =
+      std::ranges::any_of(golden.bits, [](const auto& row) { return row.first.starts_with("path, "); });
   if (!is_writing && !has_all) std::printf("SKIPPED: the table has no paths; their bits are NOT tested\n");
   const std::vector<std::string> different = different_rows(golden.bits, bits, has_all && !is_writing);
   if (is_own && !different.empty())

@@ -189,8 +189,8 @@ Json details_of(const Json& entry, const Journal& journal, const Json& kinds) {
 
 Json shown_head(const Json& head) {
   Json shown = Json::object();
-  for (const char* key : {"program", "scene", "journal", "camera", "resolution", "samples", "noise", "options", "machine",
-                          "full_render_seconds", "cache_bytes", "cache_damage", "interrupted"})
+  for (const char* key : {"program", "scene", "journal", "camera", "resolution", "samples", "noise", "options",
+                          "machine", "full_render_seconds", "cache_bytes", "cache_damage", "interrupted"})
     shown[key] = head.contains(key) ? cut(head.at(key), kLongestText) : Json(nullptr);
   return shown;
 }

@@ -1,5 +1,5 @@
-// What a stored image keeps of the path integrator beside trees, tile by tile: sums of light, the pixels that they give,
-// rays, segments and terms.
+// What a stored image keeps of the path integrator beside trees, tile by tile: sums of light, the pixels that they
+// give, rays, segments and terms.
 #include <memory>
 #include <utility>
 

@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 37> kMembers{
     "reloaded",       "peak_rss",   "resumed",       "exposure",       "overlays",         "verify_percent",
     "verify"};
 constexpr std::array<std::string_view, 3> kFurtherMembers{"color_trees_evaluated", "color_trees_reused",
-                                                           "tunnels_read"};
+                                                          "tunnels_read"};
 constexpr std::array<std::string_view, 15> kCounts{"samples_total",
                                                    "samples_affected",
                                                    "pixels_changed",

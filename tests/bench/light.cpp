@@ -48,9 +48,8 @@ void print_step(const BenchOptions& options, Replayer& replayer, const Journal& 
   const double terms = static_cast<double>(replayer.resident().kept_terms) /
                        std::max(1.0, static_cast<double>(counters.samples_affected));
   std::printf("  %-34s %-10s %9.1f %9.1f %9.1f %8.1f %% %8.1f %% %9.0f\n", step.name.substr(0, 34).c_str(),
-              std::string(change_class_name(first.result.classification.change)).c_str(),
-              full.render / first.seconds, full.render / later.seconds,
-              (full.render + full.frame) / (later.seconds + full.frame),
+              std::string(change_class_name(first.result.classification.change)).c_str(), full.render / first.seconds,
+              full.render / later.seconds, (full.render + full.frame) / (later.seconds + full.frame),
               100.0 * static_cast<double>(counters.samples_affected) / static_cast<double>(counters.samples_total),
               100.0 * static_cast<double>(counters.pixels_changed) / options.pixels(), terms);
   options.note("Light", step.name, "full render / later edit", full.render / later.seconds);

@@ -53,9 +53,8 @@ class CacheFolder : public testing::Test {
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   /// As it is taken by most tests.
   [[nodiscard]] ProgramResult preprocess(const std::string& output, std::vector<std::string> flags = {}) const {
-    flags.insert(flags.begin(),
-                 {"preprocess", kScene, "-o", at(output), "--integrator", "whitted", "--resolution",
-                  "40x24", "--progress", "none"});
+    flags.insert(flags.begin(), {"preprocess", kScene, "-o", at(output), "--integrator", "whitted", "--resolution",
+                                 "40x24", "--progress", "none"});
     return relook(flags);
   }
   void make_cache() const {
@@ -129,7 +128,7 @@ TEST_F(CacheFolder, another_cache_is_replaced_only_when_asked) {
                           {{"--look", at("look.json"), "--samples", "2", "--resolution", "8x8"},
                            "of another scene, resolution (40x24) and --samples (1);"}};
   for (const Other& other : others) {
-    std::vector<std::string> command{"preprocess", kScene,         "-o",         at("c"),
+    std::vector<std::string> command{"preprocess",   kScene,    "-o",         at("c"),
                                      "--integrator", "whitted", "--progress", "none"};
     if (std::ranges::find(other.flags, "--resolution") == other.flags.end())
       command.insert(command.end(), {"--resolution", "40x24"});

@@ -101,10 +101,12 @@ TEST(PathBudgetOfDerived, is_kept_to_and_changes_no_frame) {
     most.push_back(0);
     for (std::size_t k = 1; k <= kSteps; ++k) {
       const Change change = random_path_change(replayer.state().document().look, dice);
-      const std::string what = std::to_string(ceiling) + " step " + std::to_string(k) + " " + Json(change.forward).dump();
+      const std::string what =
+          std::to_string(ceiling) + " step " + std::to_string(k) + " " + Json(change.forward).dump();
       expect_path_step(replayer, edit_of_list(change.forward), what, {false, false});
       most.back() = std::max(most.back(), kept(replayer.resident()));
-      ASSERT_LE(kept(replayer.resident()), ceiling + ceiling / 4 + 1000) << what << ", but for what vectors hold beside";
+      ASSERT_LE(kept(replayer.resident()), ceiling + ceiling / 4 + 1000)
+          << what << ", but for what vectors hold beside";
     }
   }
   EXPECT_GT(most[0], most[1]);

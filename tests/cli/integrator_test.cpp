@@ -1,5 +1,6 @@
-// --integrator, --diffuse-depth, --glossy-depth and --transmission-depth: which verbs take them, what they are where they
-// are not said, what is refused beside them, and that a cache, its replays and their reports are of one integrator.
+// --integrator, --diffuse-depth, --glossy-depth and --transmission-depth: which verbs take them, what they are where
+// they are not said, what is refused beside them, and that a cache, its replays and their reports are of one
+// integrator.
 #include "cli_fixture.h"
 
 namespace relook {
@@ -22,9 +23,8 @@ class IntegratorCli : public Cli {
 
 TEST_F(IntegratorCli, path_with_64_samples_and_two_diffuse_bounces_is_what_is_rendered) {
   ASSERT_EQ(relook({"render", kScene, "-o", at("usual.exr"), "--resolution", "24x16", "--quiet"}).exit_code, 0);
-  const std::vector<std::string> said{"--integrator",   "path", "--samples",           "64",
-                                      "--diffuse-depth", "2",    "--glossy-depth",      "4",
-                                      "--max-depth",     "6",    "--transmission-depth", "16"};
+  const std::vector<std::string> said{"--integrator",   "path", "--samples",   "64", "--diffuse-depth",      "2",
+                                      "--glossy-depth", "4",    "--max-depth", "6",  "--transmission-depth", "16"};
   std::vector<std::string> words{"render", kScene, "-o", at("said.exr"), "--resolution", "24x16", "--quiet"};
   words.insert(words.end(), said.begin(), said.end());
   ASSERT_EQ(relook(words).exit_code, 0);
@@ -78,8 +78,9 @@ TEST_F(IntegratorCli, structures_that_path_has_none_of_are_named_in_a_warning) {
     for (const char* none : {"tunnels", "groups", "color_trees", "atoms", "shadow_bits"}) EXPECT_EQ(options[none], 0);
   }
   const ProgramResult none =
-      relook({"preprocess", kScene, "-o", at("none"), "--resolution", "24x16", "--progress", "none", "--tunnels", "0",
-              "--groups", "0", "--shadow-bits", "0", "--color-trees", "0", "--atoms", "0", "--ray-trees", "100"});
+      relook({"preprocess", kScene, "-o",          at("none"), "--resolution",  "24x16", "--progress",    "none",
+              "--tunnels",  "0",    "--groups",    "0",        "--shadow-bits", "0",     "--color-trees", "0",
+              "--atoms",    "0",    "--ray-trees", "100"});
   EXPECT_EQ(none.exit_code, 0);
   EXPECT_EQ(none.output.find("warning"), std::string::npos) << "to ask for none is no fault";
 }
@@ -140,8 +141,8 @@ TEST_F(IntegratorCli, a_cache_or_run_of_the_other_one_is_in_the_way) {
                "--integrator (path)");
   expect_error(preprocess_path("c", {"--glossy-depth", "1"}), 1, "--glossy-depth (4)");
   ASSERT_EQ(replay("c", "r").exit_code, 0);
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("w"), "--resolution", "24x16", "--integrator", "whitted", "--samples",
-                    "64", "--quiet"})
+  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("w"), "--resolution", "24x16", "--integrator", "whitted",
+                    "--samples", "64", "--quiet"})
                 .exit_code,
             0);
   expect_error(replay("w", "r"), 1, "frames of --integrator path, not whitted");
@@ -174,7 +175,8 @@ TEST_F(IntegratorCli, inspect_says_how_large_areas_are_and_what_a_cache_is_of) {
   EXPECT_FALSE(summary.contains("sun_share")) << "the environment has no image";
   ASSERT_EQ(preprocess_path("c").exit_code, 0);
   const ProgramResult cache = relook({"inspect", at("c")});
-  EXPECT_NE(cache.output.find("path, depth 6 (diffuse 2, glossy 4, transmission 16)"), std::string::npos) << cache.output;
+  EXPECT_NE(cache.output.find("path, depth 6 (diffuse 2, glossy 4, transmission 16)"), std::string::npos)
+      << cache.output;
 }
 
 }  // namespace

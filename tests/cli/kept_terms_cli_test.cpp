@@ -1,5 +1,5 @@
-// A colour is edited twice under --integrator path, through the program: the second time from terms that the first edit has
-// kept, whatever lets light through and however lights are summed, and every frame is the full render.
+// A colour is edited twice under --integrator path, through the program: the second time from terms that the first edit
+// has kept, whatever lets light through and however lights are summed, and every frame is the full render.
 #include "cli_fixture.h"
 
 namespace relook {
@@ -83,13 +83,14 @@ TEST_F(KeptTermsCli, what_is_opaque_glass_or_a_leaf_is_edited_again_from_kept_te
 
 TEST_F(KeptTermsCli, of_chosen_parameters_are_there_before_the_first_edit) {
   write_text(at("j.json"), Json{{"relook", "journal/1"},
-                                {"steps", {color_of("Paint", {0.2, 0.5, 0.9, 1}), color_of("Glass", {0.9, 0.4, 0.1, 1}),
-                                           color_of("Mirror", {0.5, 0.4, 0.1, 1})}}}
+                                {"steps",
+                                 {color_of("Paint", {0.2, 0.5, 0.9, 1}), color_of("Glass", {0.9, 0.4, 0.1, 1}),
+                                  color_of("Mirror", {0.5, 0.4, 0.1, 1})}}}
                                .dump());
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "64x40", "--samples", "2", "--quiet"}).exit_code,
-            0);
-  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("r"), "--verify", "--quiet", "--params", "/materials/Paint",
-                    "/materials/Glass/pbrMetallicRoughness"})
+  ASSERT_EQ(
+      relook({"preprocess", kScene, "-o", at("c"), "--resolution", "64x40", "--samples", "2", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(relook({"replay", at("c"), at("j.json"), "-o", at("r"), "--verify", "--quiet", "--params",
+                    "/materials/Paint", "/materials/Glass/pbrMetallicRoughness"})
                 .exit_code,
             0);
   const Json steps = read_json(at("r/report.json"))["steps"];

@@ -84,8 +84,27 @@ TEST_F(Options, without_effect_beside_others_are_refused) {
 
 /// What preprocess is told of structures is the cache's, and a replay's where that is not told otherwise.
 TEST_F(Options, of_structures_that_a_replay_does_not_name_are_those_of_the_cache) {
-  ASSERT_EQ(relook({"preprocess", kScene, "-o", at("C"), "--integrator", "whitted", "--resolution", "16x9", "--quiet",
-                    "--groups", "7", "--atoms", "2", "--color-trees", "25", "--tunnels", "3", "--tunnel-levels", "1", "--most-tunnels", "500"})
+  ASSERT_EQ(relook({"preprocess",
+                    kScene,
+                    "-o",
+                    at("C"),
+                    "--integrator",
+                    "whitted",
+                    "--resolution",
+                    "16x9",
+                    "--quiet",
+                    "--groups",
+                    "7",
+                    "--atoms",
+                    "2",
+                    "--color-trees",
+                    "25",
+                    "--tunnels",
+                    "3",
+                    "--tunnel-levels",
+                    "1",
+                    "--most-tunnels",
+                    "500"})
                 .exit_code,
             0);
   std::ofstream(at("j.json")) << R"({"relook": "journal/1", "steps": []})";

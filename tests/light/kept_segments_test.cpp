@@ -1,6 +1,8 @@
 // Where segments of stored trees run, kept between steps of the path integrator: a scan over them names every sample
 // that a ray test would look at, and few others; and after whatever moves, comes, goes or hides in turn, the image is
 // that of a fresh preprocess.
+#include "trace/update/kept_segments.h"
+
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -12,7 +14,6 @@
 #include "trace/box_range.h"
 #include "trace/shadow/shadow_segment.h"
 #include "trace/tree/segment_tests.h"
-#include "trace/update/kept_segments.h"
 
 namespace relook {
 namespace {

@@ -184,28 +184,29 @@ struct ColorEdit {
 };
 std::vector<ColorEdit> color_edits() {
   const FieldMask base = mask_of(Field::base_color);
-  return {{"base colour", base, [](Material& m) { m.base_color = Rgba(0.7F, 0.2F, 0.9F, m.base_color.a); }},
-          {"black", base, [](Material& m) { m.base_color = Rgba(0, 0, 0, m.base_color.a); }},
-          {"alpha", base, [](Material& m) { m.base_color.a *= 0.9F; }},
-          {"roughness", mask_of(Field::roughness), [](Material& m) { m.roughness *= 1.0F - 1.0F / 64; }},
-          {"metallic", mask_of(Field::metallic), [](Material& m) { m.metallic *= 1.0F - 1.0F / 256; }},
-          {"glass", mask_of(Field::transmission) | mask_of(Field::attenuation_color) | mask_of(Field::attenuation_distance),
-           [](Material& m) {
-             m.transmission *= 0.9F;
-             m.attenuation_color = m.attenuation_color * 0.5F;
-             m.attenuation_distance *= 0.75F;
-           }},
-          {"proportions", mask_of(Field::transparency) | mask_of(Field::refraction) | mask_of(Field::phong_diffuse),
-           [](Material& m) {
-             m.transparency *= 0.75F;
-             m.refraction *= 0.5F;
-             m.phong_diffuse = m.phong_diffuse * 0.5F;
-           }},
-          {"several", base | mask_of(Field::sheen_color) | mask_of(Field::clearcoat), [](Material& m) {
-             m.base_color.r *= 0.5F;
-             m.sheen_color = m.sheen_color * 0.5F;
-             m.clearcoat *= 0.75F;
-           }}};
+  return {
+      {"base colour", base, [](Material& m) { m.base_color = Rgba(0.7F, 0.2F, 0.9F, m.base_color.a); }},
+      {"black", base, [](Material& m) { m.base_color = Rgba(0, 0, 0, m.base_color.a); }},
+      {"alpha", base, [](Material& m) { m.base_color.a *= 0.9F; }},
+      {"roughness", mask_of(Field::roughness), [](Material& m) { m.roughness *= 1.0F - 1.0F / 64; }},
+      {"metallic", mask_of(Field::metallic), [](Material& m) { m.metallic *= 1.0F - 1.0F / 256; }},
+      {"glass", mask_of(Field::transmission) | mask_of(Field::attenuation_color) | mask_of(Field::attenuation_distance),
+       [](Material& m) {
+         m.transmission *= 0.9F;
+         m.attenuation_color = m.attenuation_color * 0.5F;
+         m.attenuation_distance *= 0.75F;
+       }},
+      {"proportions", mask_of(Field::transparency) | mask_of(Field::refraction) | mask_of(Field::phong_diffuse),
+       [](Material& m) {
+         m.transparency *= 0.75F;
+         m.refraction *= 0.5F;
+         m.phong_diffuse = m.phong_diffuse * 0.5F;
+       }},
+      {"several", base | mask_of(Field::sheen_color) | mask_of(Field::clearcoat), [](Material& m) {
+         m.base_color.r *= 0.5F;
+         m.sheen_color = m.sheen_color * 0.5F;
+         m.clearcoat *= 0.75F;
+       }}};
 }
 
 /// All lights of a document in one sum.
@@ -219,9 +220,12 @@ struct TermCase {
   SceneState (*scene)(std::uint32_t width, std::uint32_t height);
   bool shares = false;
 };
-const TermCase kTermCases[] = {{"lights", lights_scene},      {"lights_in_one_sum", lights_scene, true},
-                               {"spheres", spheres_scene},    {"cards", cards_scene},
-                               {"study", study_scene},        {"leaves", leaves_scene},
+const TermCase kTermCases[] = {{"lights", lights_scene},
+                               {"lights_in_one_sum", lights_scene, true},
+                               {"spheres", spheres_scene},
+                               {"cards", cards_scene},
+                               {"study", study_scene},
+                               {"leaves", leaves_scene},
                                {"leaves_in_one_sum", leaves_scene, true}};
 
 /// Is it on a tree's way, or on that of its light?

@@ -1,5 +1,5 @@
-// Depth of field: an edge out of focus is covered as the disc of a lens sees it, one in focus is as sharp as without; the
-// command line takes the lens, caches and reports hold it.
+// Depth of field: an edge out of focus is covered as the disc of a lens sees it, one in focus is as sharp as without;
+// the command line takes the lens, caches and reports hold it.
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -124,8 +124,8 @@ std::vector<std::byte> frame_bytes(const std::filesystem::path& file) {
 
 Json verified_report(const ReplayCase& replay, const ScratchFolder& folder) {
   const std::string cache = (folder / "cache").string(), run = (folder / "run").string();
-  std::vector<std::string> preprocess{RELOOK_PROGRAM, "preprocess",      replay.scene.string(), "-o", cache,
-                                      "--resolution", replay.resolution, "--quiet"};
+  std::vector<std::string> preprocess{RELOOK_PROGRAM, "preprocess",   replay.scene.string(), "-o",
+                                      cache,          "--resolution", replay.resolution,     "--quiet"};
   preprocess.insert(preprocess.end(), replay.view.begin(), replay.view.end());
   if (std::ranges::find(replay.view, "--integrator") == replay.view.end())
     preprocess.insert(preprocess.end(), {"--integrator", "whitted"});

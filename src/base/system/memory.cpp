@@ -36,15 +36,16 @@ std::uint64_t least_limit(const std::string& root, std::string path, const char*
 
 std::uint64_t machine_memory_bytes() {
   static const std::uint64_t bytes = [] {
-    auto least = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-                 static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+    auto least =
+        static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
     std::ifstream groups("/proc/self/cgroup");  // "0::/path", of version 1 "7:memory:/path"
     for (std::string line; std::getline(groups, line);) {
       const std::size_t first = line.find(':'), second = line.find(':', first + 1);
       if (first == std::string::npos || second == std::string::npos) continue;
       const std::string names = line.substr(first + 1, second - first - 1), path = line.substr(second + 1);
       if (names.empty()) least = std::min(least, least_limit("/sys/fs/cgroup", path, "memory.max"));
-      if (names == "memory") least = std::min(least, least_limit("/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
+      if (names == "memory")
+        least = std::min(least, least_limit("/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
     }
     return least;
   }();

@@ -87,8 +87,8 @@ class Exchange {
     for (std::size_t n = 0; n < shares.size(); ++n) {
       const KeptTerms::Opening& opening = kept_.openings[n];
       const std::uint32_t parent = opening.parent;
-      shares[n] = parent == kNoNode ? opening.share
-                                    : shares[parent] * (1.0F - factor(kept_.openings[parent].coverage, k).x);
+      shares[n] =
+          parent == kNoNode ? opening.share : shares[parent] * (1.0F - factor(kept_.openings[parent].coverage, k).x);
     }
   }
   [[nodiscard]] const Color& factor(FactorId id, std::size_t k) const {

@@ -1,8 +1,9 @@
-// Terms of light that are kept for the next edit of the same parameters (paper 3.3): of some ray trees, all that such an
-// edit changes. A term is the weight of its node's light on the way to the eye times what the node has of unit light;
-// both are products, of factors that stay and of some that residual programs yield: weights of rays, what hits make of
-// light, tints of what stands on shadow segments, coverage. Multiplied in the order of shading, for two scenes, they
-// give the terms to take out of sums and those to put in, bit for bit. Made by PathShader, evaluated by replay/path.
+// Terms of light that are kept for the next edit of the same parameters (paper 3.3): of some ray trees, all that such
+// an edit changes. A term is the weight of its node's light on the way to the eye times what the node has of unit
+// light; both are products, of factors that stay and of some that residual programs yield: weights of rays, what hits
+// make of light, tints of what stands on shadow segments, coverage. Multiplied in the order of shading, for two scenes,
+// they give the terms to take out of sums and those to put in, bit for bit. Made by PathShader, evaluated by
+// replay/path.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -47,13 +48,14 @@ struct KeptTerms {
   /// A term whose unit light changes.
   struct Product {
     std::uint32_t node = 0;
-    FactorId first;             // of its unit light's factors
-    std::uint16_t more = 0;     // how many of `more_factors` follow
-    std::uint16_t source = 0;   // as below
+    FactorId first;            // of its unit light's factors
+    std::uint16_t more = 0;    // how many of `more_factors` follow
+    std::uint16_t source = 0;  // as below
   };
   /// What the eye's straight ray adds to the coverage of its pixel.
   struct Opening {
-    std::uint32_t parent = kNoNode;  // among openings: the one before it on the ray; kNoNode: `share` of the ray gets here
+    std::uint32_t parent =
+        kNoNode;  // among openings: the one before it on the ray; kNoNode: `share` of the ray gets here
     float share = 1;
     FactorId coverage;
     std::uint16_t pixel = 0;
@@ -102,8 +104,8 @@ struct TermMemory {
 /// The columns of a surface behind its branches.
 enum class OwnColumn : std::uint32_t { emission, ambient, unlit, coverage };
 
-/// Takes out of `sums` what the terms are in `before`, puts in what they are in `after`. Terms that stay are not touched.
-/// `places`: of both scenes.
+/// Takes out of `sums` what the terms are in `before`, puts in what they are in `after`. Terms that stay are not
+/// touched. `places`: of both scenes.
 void exchange_terms(const KeptTerms& kept, const Scene& before, const Scene& after, const SumPlaces& places,
                     TermMemory& memory, TileSums& sums);
 

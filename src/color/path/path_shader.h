@@ -34,8 +34,8 @@ class PathShader {
   /// have their lobes.
   void shade_keeping(const TreeBlock& block, std::uint32_t samples, TileSums& sums, const Wanted& wanted,
                      TileVertices& vertices);
-  /// Fills `kept`, which is empty, with the terms of a block that an edit of some parameters changes, in place of adding
-  /// any. Requires: the parameters are of materials, no fields of kMappingMask among them.
+  /// Fills `kept`, which is empty, with the terms of a block that an edit of some parameters changes, in place of
+  /// adding any. Requires: the parameters are of materials, no fields of kMappingMask among them.
   void keep(const TreeBlock& block, std::uint32_t samples, const ParameterSet& parameters, KeptTerms& kept);
   /// By node of the block that was shaded, or kept, last: what of unit light there comes to the eye.
   [[nodiscard]] std::span<const Color> weights() const;

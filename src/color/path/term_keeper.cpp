@@ -36,7 +36,8 @@ void TermKeeper::begin(std::span<const Color> steps, std::span<const Color> weig
     slot_[i] = static_cast<std::uint32_t>(kept_.nodes.size());
     const auto pixel = static_cast<std::uint16_t>(node.sample / samples_of_pixel_);
     if (is_below(i))
-      kept_.nodes.push_back({slot_[node.parent], is_source(node.parent) ? yielded_weight(i) : constant(steps[i]), pixel});
+      kept_.nodes.push_back(
+          {slot_[node.parent], is_source(node.parent) ? yielded_weight(i) : constant(steps[i]), pixel});
     else
       kept_.nodes.push_back({kNoNode, constant(weights[i]), pixel});
   }
@@ -72,8 +73,9 @@ std::uint32_t TermKeeper::add_batch(std::uint32_t number, const PathBatch& batch
                                     PathRunner& runner) {
   const MaterialId material = runner.program(number).material;
   const auto& split = runner.split_of(number, parameters_.fields_of(material));
-  kept_.batches.push_back({split, material, lanes,
-                           stored_columns(split->constants, runner.parameters(number), batch, lanes, runner.scratch())});
+  kept_.batches.push_back(
+      {split, material, lanes,
+       stored_columns(split->constants, runner.parameters(number), batch, lanes, runner.scratch())});
   const auto first = static_cast<std::uint32_t>(yielded_);
   yielded_ += lanes * kept_.batches.back().width();
   return first;
@@ -178,8 +180,7 @@ void TermKeeper::add_lit_sources(std::span<const LightTerm> terms, PathRunner& r
 }
 
 bool TermKeeper::opens(std::uint32_t node) const {
-  return is_source(node) &&
-         scene_.object(block_.nodes[node].object).material->alpha_mode == AlphaMode::blend;
+  return is_source(node) && scene_.object(block_.nodes[node].object).material->alpha_mode == AlphaMode::blend;
 }
 
 void TermKeeper::add_coverage(std::uint32_t node, float share, float coverage) {
@@ -188,7 +189,8 @@ void TermKeeper::add_coverage(std::uint32_t node, float share, float coverage) {
   const std::uint32_t before = goes_on ? opening_[hit.parent] : kNoNode;
   if (before == kNoNode && !(share > 0 && opens(node))) return;
   opening_[node] = static_cast<std::uint32_t>(kept_.openings.size());
-  const FactorId own = is_source(node) ? own_column(node, OwnColumn::coverage) : constant({coverage, coverage, coverage});
+  const FactorId own =
+      is_source(node) ? own_column(node, OwnColumn::coverage) : constant({coverage, coverage, coverage});
   kept_.openings.push_back({before, share, own, static_cast<std::uint16_t>(hit.sample / samples_of_pixel_)});
 }
 

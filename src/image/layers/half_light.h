@@ -1,5 +1,5 @@
-// Light of the first half of each pixel's samples, under Integrator::path. Beside that of all of them it tells how far a
-// pixel is from what it estimates: both halves are points of the pixel's own sets, stratified in themselves.
+// Light of the first half of each pixel's samples, under Integrator::path. Beside that of all of them it tells how far
+// a pixel is from what it estimates: both halves are points of the pixel's own sets, stratified in themselves.
 #pragma once
 #include <cstdint>
 #include <optional>

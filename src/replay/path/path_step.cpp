@@ -211,8 +211,8 @@ class PathUpdate {
     return parameters;
   }
   /// Is a tile traced as a whole in less time than its trees are updated? Trees of changed objects are expanded as they
-  /// were, shaded, grown anew and shaded again, about twice the work of tracing them; the others are tested, unless they
-  /// are known to be left alone.
+  /// were, shaded, grown anew and shaded again, about twice the work of tracing them; the others are tested, unless
+  /// they are known to be left alone.
   [[nodiscard]] bool is_sooner_traced(const PathPass& pass, std::size_t tile,
                                       std::span<const std::uint8_t> touched) const {
     if (pass.grow_after.level == nullptr || change_.step.rays.only_lights()) return false;

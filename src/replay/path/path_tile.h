@@ -42,19 +42,19 @@ struct PathPass {
   std::vector<std::uint8_t> named_path{};  // by path: it names an object with a flag
   bool updates_all = false;                // every path is in update_path
   RayUse ray_use = RayUse::none;
-  SegmentSelection selection{};  // of a step that moves something and no light
-  SegmentGrid segment_grid{};    // in which such a step writes segments down; empty: it does not
-  bool uses_vertices = false;    // with RayUse::lights: may_use_vertices()
+  SegmentSelection selection{};                   // of a step that moves something and no light
+  SegmentGrid segment_grid{};                     // in which such a step writes segments down; empty: it does not
+  bool uses_vertices = false;                     // with RayUse::lights: may_use_vertices()
   std::optional<ParameterSet> term_parameters{};  // those of an edit for whose like terms are kept
 };
 
 /// What there is of a tile before an edit.
 struct KeptOfTile {
   const PackedSums& sums;
-  const TileRays& rays;                  // empty: not kept
-  const TileSegments& segments;          // empty: not kept
-  std::vector<std::uint8_t> touched{};   // by sample: may the selection touch its tree? Empty: not known
-  bool makes_vertices = false;           // are vertices to be kept from now on, where they can be?
+  const TileRays& rays;                 // empty: not kept
+  const TileSegments& segments;         // empty: not kept
+  std::vector<std::uint8_t> touched{};  // by sample: may the selection touch its tree? Empty: not known
+  bool makes_vertices = false;          // are vertices to be kept from now on, where they can be?
 };
 
 struct PathTileResult {

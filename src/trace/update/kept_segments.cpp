@@ -34,9 +34,7 @@ void find_near(const std::array<const std::uint16_t*, 6>& ends, std::size_t coun
   }
 }
 
-bool any_of(const Near& near, std::size_t count) {
-  return std::memchr(near.data(), 1, count) != nullptr;
-}
+bool any_of(const Near& near, std::size_t count) { return std::memchr(near.data(), 1, count) != nullptr; }
 
 SegmentKind kind_of(ShadowState state) {
   return state == ShadowState::blocked ? SegmentKind::blocked : SegmentKind::open;

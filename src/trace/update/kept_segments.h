@@ -1,7 +1,7 @@
 // Where all segments of stored trees run, kept from one step to the next: when objects move, one scan over the tile's
 // segments says which samples the selection may meet or may have met, without growing a tree. It errs to more: a sample
-// that it leaves out has no segment that SegmentTests would test. Derived from ray trees under Integrator::path; written
-// and read by replay/path, held by StoredImage.
+// that it leaves out has no segment that SegmentTests would test. Derived from ray trees under Integrator::path;
+// written and read by replay/path, held by StoredImage.
 #pragma once
 #include <array>
 #include <cstdint>
