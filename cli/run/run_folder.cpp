@@ -127,6 +127,20 @@ void RunFolder::encode_and_write(const StepReport& step, const FrameMeta& meta, 
                   {step.preview, stamp_of(path_ / step.preview, preview_hash_)}}};
 }
 
+namespace {
+
+/// By tile: the leaves with pixels that have changed. Steps of paths search no regions.
+std::vector<Leaves> changed_leaves(const ChangedPixels& changed, std::size_t tiles) {
+  std::vector<Leaves> leaves(tiles);
+  for (const ChangedPixels::Tile& tile : changed.tiles())
+    for (std::uint32_t y = 0; y < kTileSize; ++y)
+      for (std::uint32_t x = 0; x < kTileSize; ++x)
+        if ((tile.mask[y] >> x & 1U) != 0) leaves[tile.tile].set(y / kLeafSize * kLeafSide + x / kLeafSize);
+  return leaves;
+}
+
+}  // namespace
+
 void RunFolder::write_overlays(StepReport& step, const Replayer& replayer, const StepResult& result) {
   make_folders(path_ / "overlays");
   const auto write = [&](const char* kind, const auto& draw) {
@@ -142,6 +156,9 @@ void RunFolder::write_overlays(StepReport& step, const Replayer& replayer, const
   if (!result.dependent.empty()) {
     write("dependent", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.dependent[tile]); });
     write("touched", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, result.touched[tile]); });
+  } else if (replayer.image().view.integrator == Integrator::path && !result.changed_pixels.empty()) {
+    const std::vector<Leaves> changed = changed_leaves(result.changed_pixels, replayer.image().trees.size());
+    write("dependent", [&](Frame& frame, std::size_t tile) { draw_regions(frame, tile, changed[tile]); });
   }
   if (replayer.regions().has_groups())
     write("groups", [&](Frame& frame, std::size_t tile) { draw_groups(frame, tile, replayer.regions().groups(tile)); });

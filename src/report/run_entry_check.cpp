@@ -125,7 +125,6 @@ void check_files(const JsonView& view) {
   }
   constexpr std::size_t kAlways = 2;  // frame and preview
   for (std::size_t i = 0; i < kAlways; ++i) (void)files.at(names[i]);
-  if (view.at("overlays").boolean()) (void)files.at("overlays/" + stem + "_groups.png");
   if (view.at("frame_hash").text() != files.at(frame).at("hash").text()) view.at("frame_hash").fail("not the file's");
 }
 

@@ -85,6 +85,16 @@ TEST_F(IntegratorCli, structures_that_path_has_none_of_are_named_in_a_warning) {
   EXPECT_EQ(none.output.find("warning"), std::string::npos) << "to ask for none is no fault";
 }
 
+TEST_F(IntegratorCli, overlays_show_the_squares_that_change_and_a_run_with_them_is_complete) {
+  write_text(at("j.json"), kJournal);
+  ASSERT_EQ(preprocess_path("c").exit_code, 0);
+  ASSERT_EQ(replay("c", "r", {"--overlays"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(at("r/overlays/0001_dependent.png")));
+  EXPECT_FALSE(std::filesystem::exists(at("r/progress.jsonl"))) << "all is in the report";
+  EXPECT_NE(relook({"replay", at("c"), at("j.json"), "-o", at("r"), "--overlays"}).output.find("complete"),
+            std::string::npos);
+}
+
 TEST_F(IntegratorCli, ray_trees_that_are_not_kept_change_no_frame) {
   write_text(at("j.json"), kJournal);
   const auto make = [&](const std::string& name, std::vector<std::string> flags) {

@@ -37,7 +37,9 @@ class ExposedRun : public testing::Test {
       {"name": "red", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                                 "value": [0.9, 0.1, 0.1, 1]}]},
       {"name": "glass", "wedge": {"path": "/materials/Glass/extensions/KHR_materials_ior/ior", "values": [1.2, 1.7]}}]})";
-    ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--resolution", "72x40", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--integrator", "whitted", "--resolution", "72x40", "--quiet"})
+                  .exit_code,
+              0);
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] ProgramResult replay(const std::string& run, const std::vector<std::string>& further) const {
@@ -70,8 +72,8 @@ TEST_F(ExposedRun, differs_in_previews_headers_and_report_alone) {
   for (const Json& step : report("bright")["steps"]) EXPECT_EQ(step["exposure"], 2.5) << step["name"];
   // What a replay writes is what render writes.
   for (const char* name : {"last.png", "last.exr"})
-    ASSERT_EQ(relook({"render", kScene, "-o", at(name), "--resolution", "72x40", "--journal", at("j.json"),
-                      "--exposure", "2.5", "--quiet"})
+    ASSERT_EQ(relook({"render", kScene, "-o", at(name), "--integrator", "whitted", "--resolution", "72x40", "--journal",
+                      at("j.json"), "--exposure", "2.5", "--quiet"})
                   .exit_code,
               0);
   EXPECT_EQ(read_file(at("last.png")), read_file(at("bright/previews/0002_02.png")));
