@@ -25,8 +25,8 @@ struct VerbCase {
 };
 
 const std::vector<VerbCase> kVerbs{
-    {"render", {"render", "@in/scene.gltf", "-o", "@out/x.exr", "--resolution", "64x36", "--aovs"}},
-    {"preprocess", {"preprocess", "@in/scene.gltf", "-o", "@out/c", "--resolution", "64x36"}},
+    {"render", {"render", "@in/scene.gltf", "-o", "@out/x.exr", "--resolution", "64x36", "--samples", "4", "--aovs"}},
+    {"preprocess", {"preprocess", "@in/scene.gltf", "-o", "@out/c", "--resolution", "64x36", "--samples", "4"}},
     {"replay", {"replay", "@in/c", "@in/j.json", "-o", "@out/run", "--verify", "--overlays", "--trace", "@out/t.json"}},
     {"replay_of_two", {"replay", "@in/c", "@in/j.json", "@in/k.json", "-o", "@out/run", "--access-log", "@out/log"}},
     {"compare", {"compare", "@in/run", "@in/run", "-o", "@out/compare"}},
@@ -93,7 +93,8 @@ class Descriptors : public testing::TestWithParam<VerbCase> {
     other["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.1, 0.2, 0.3, 1};
     write_file(folder_ / "in/other.gltf", other.dump());
     for (const char* journal : {"in/j.json", "in/k.json"}) write_file(folder_ / journal, std::string_view(kJournal));
-    run("in", {"preprocess", "@in/scene.gltf", "-o", "@in/c", "--resolution", "64x36", "--quiet"}, "");
+    run("in", {"preprocess", "@in/scene.gltf", "-o", "@in/c", "--resolution", "64x36", "--samples", "4", "--quiet"},
+        "");
     run("in", {"replay", "@in/c", "@in/j.json", "-o", "@in/run", "--access-log", "@in/log", "--quiet"}, "");
   }
 

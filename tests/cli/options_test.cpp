@@ -129,7 +129,8 @@ TEST_F(Options, of_structures_that_a_replay_does_not_name_are_those_of_the_cache
 }
 
 TEST_F(Options, memory_of_a_preprocess_is_a_limit_that_is_said) {
-  const std::vector<std::string> command{"preprocess", kScene, "-o", at("C"), "--resolution", "640x360", "--quiet"};
+  const std::vector<std::string> command{"preprocess", kScene,      "-o", at("C"),  "--resolution",
+                                         "640x360",    "--samples", "1",  "--quiet"};
   std::vector<std::string> tight = command, ample = command;
   tight.insert(tight.end(), {"--memory", "8M"});
   ample.insert(ample.end(), {"--memory", "4G"});

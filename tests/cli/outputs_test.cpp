@@ -35,7 +35,9 @@ class Outputs : public testing::Test {
     std::ofstream(at("patch.json")) << kPatch;
     std::ofstream(at("mine.txt")) << "mine";
     scene_ = at("scene/spheres.gltf");
-    ASSERT_EQ(relook({"preprocess", scene_, "-o", at("c"), "--resolution", "40x24", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(
+        relook({"preprocess", scene_, "-o", at("c"), "--resolution", "40x24", "--samples", "4", "--quiet"}).exit_code,
+        0);
     const ProgramResult run = relook({"replay", at("c"), at("j.json"), "-o", at("run"), "--quiet"});
     ASSERT_EQ(run.exit_code, 0) << run.output;
     for (const char* name : {"a.exr", "b.exr"}) fs::copy_file(at("run/frames/0001.exr"), at(name));

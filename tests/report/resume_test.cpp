@@ -43,7 +43,9 @@ class Resume : public testing::Test {
     const std::string first = materials.begin().key();
     journal.replace(journal.find("Mirror"), 6, first);
     std::ofstream(at("j.json")) << journal;
-    ASSERT_EQ(relook({"preprocess", scene(), "-o", at("c"), "--resolution", "64x36", "--quiet"}).exit_code, 0);
+    ASSERT_EQ(
+        relook({"preprocess", scene(), "-o", at("c"), "--resolution", "64x36", "--samples", "4", "--quiet"}).exit_code,
+        0);
     const ProgramResult whole = replay("whole");
     ASSERT_EQ(whole.exit_code, 0) << whole.output;
     whole_ = files("whole");
