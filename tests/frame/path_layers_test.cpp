@@ -130,7 +130,7 @@ TEST(PathLayersOfAScene, albedo_is_the_base_color) {
   }
 }
 
-/// Of independent sets of numbers (the same image, shifted) errors are as large as the layer says, as a mean.
+/// The layer is that of its definition, and as a mean about as large as the square of the error.
 TEST_P(PathLayers, have_the_variance_that_halves_of_the_samples_tell) {
   const SceneState state = path_scene(GetParam());
   const auto render_of = [&](std::uint32_t samples) {

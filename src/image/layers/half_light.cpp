@@ -40,6 +40,7 @@ TileSums HalfLight::trace(const TileRect& rect, std::uint32_t first, std::uint32
   ChunkSize chunk(scene_.grow.layout().lights);
   GrowCounters counters;
   for (std::uint32_t begin = 0, end = 0; begin < pixels; begin = end) {
+    stop_if_interrupted();
     end = std::min(begin + std::max(1U, chunk.samples() / half_), pixels);
     rays_.clear();
     for (std::uint32_t k = begin; k < end; ++k) {

@@ -65,8 +65,8 @@ struct KeptHalves {
   std::vector<std::uint32_t> versions;  // [tiles] of the tile's sums of all samples; 0: none is kept
 };
 
-/// How noisy a frame is: the mean over pixels of the standard error of their luminance over the mean luminance, from
-/// every 32nd pixel. None: a sample a pixel, whitted, or a black frame. `frame`: of the scene.
+/// How noisy a frame is: how far the luminance of pixels is off on average, as halves tell, over the mean luminance;
+/// from every 32nd pixel. None: a sample a pixel, whitted, or a black frame. `frame`: of the scene.
 [[nodiscard]] std::optional<double> noise(const Scene& scene, const ViewOptions& view, const Frame& frame);
 
 }  // namespace relook
