@@ -8,6 +8,7 @@
 #include "scene/gltf/import.h"
 #include "scene/gltf/import_rules.h"
 #include "scene/look/counted_assets.h"
+#include "scene/look/look_check.h"
 #include "scene/look/look_names.h"
 
 namespace relook {
@@ -20,16 +21,19 @@ Renames renames_for(const LookDocument& part, const LookDocument& document, cons
   Renames renames;
   for (std::size_t s = 0; s < kSectionCount; ++s) {
     const std::string section(section_name(static_cast<Section>(s)));
-    UniqueNames unique([&](const std::string& candidate) {
-      const bool is_geometry = section == "meshes" && document.assets->mesh_primitives.contains(candidate);
-      return document.look[section].contains(candidate) || is_geometry ||
-             (section == "nodes" && document.instances.contains(candidate)) ||
-             (section == "skins" && document.inverse_binds.contains(candidate));
-    });
+    UniqueNames unique([&](const std::string& candidate) { return document.look[section].contains(candidate); });
     for (const auto& item : part.look[section].items())
       renames[s].emplace(item.key(), unique.give(prefix + item.key()));
   }
   return renames;
+}
+
+/// A name like this one under which a document keeps nothing yet: what is kept outlives the entry that names it, since
+/// a journal may go back to it.
+template <class Kept>
+std::string free_key(const Kept& kept, const std::string& name) {
+  UniqueNames unique([&](const std::string& candidate) { return kept.contains(candidate); });
+  return unique.give(name);
 }
 
 /// Roots of a document in the order of its file.
@@ -78,6 +82,7 @@ void Transaction::load_image(const std::string& name, const PatchPlace& place) {
 }
 
 void Transaction::merge_asset(const std::string& node, const PatchPlace& place) {
+  check_sections(document(), file_);  // entries are added to them
   Json& value = *find({"nodes", node});
   if (!value["asset"].is_string()) throw InputError(place.file, place.where, "expected the name of a glTF file");
   LookDocument part = make_look_document(
@@ -91,6 +96,7 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
   if (!value["children"].is_array()) throw InputError(place.file, place.where, "\"children\" is no array of names");
   for (const std::string& root : roots_of(part)) value["children"].push_back(renamed(Section::nodes, root));
 
+  std::map<std::string, std::string> geometry_keys, instance_keys, skin_keys;  // by the name of the entry
   Assets& assets = *document().assets;
   const auto offset = static_cast<std::uint32_t>(assets.meshes.size());
   for (Mesh& mesh : part.assets->meshes) {
@@ -98,18 +104,21 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
     assets.meshes.push_back(std::move(mesh));
   }
   for (auto& [geometry, ids] : part.assets->mesh_primitives) {
-    const std::string name = renamed(Section::meshes, geometry);
+    const std::string key = free_key(assets.mesh_primitives, renamed(Section::meshes, geometry));
     for (MeshId& id : ids) id = MeshId(id.index() + offset);
-    assets.mesh_primitives[name] = std::move(ids);
-    new_geometry_.push_back(name);
+    assets.mesh_primitives[key] = std::move(ids);
+    new_geometry_.push_back(key);
+    geometry_keys[renamed(Section::meshes, geometry)] = key;
   }
   for (auto& [name, matrices] : part.instances) {
-    new_instances_.push_back(renamed(Section::nodes, name));
+    new_instances_.push_back(free_key(document().instances, renamed(Section::nodes, name)));
     document().instances[new_instances_.back()] = std::move(matrices);
+    instance_keys[renamed(Section::nodes, name)] = new_instances_.back();
   }
   for (auto& [name, matrices] : part.inverse_binds) {
-    new_inverse_binds_.push_back(renamed(Section::skins, name));
+    new_inverse_binds_.push_back(free_key(document().inverse_binds, renamed(Section::skins, name)));
     document().inverse_binds[new_inverse_binds_.back()] = std::move(matrices);
+    skin_keys[renamed(Section::skins, name)] = new_inverse_binds_.back();
   }
   part.inverse_binds.clear();
   count_geometry(part);  // nothing is left there
@@ -124,14 +133,16 @@ void Transaction::merge_asset(const std::string& node, const PatchPlace& place) 
       if (section == Section::images)
         entry["extras"]["relook"]["content"] = keep_image(part.assets->images.at(item.key()).bytes);
       if (section == Section::meshes) {
-        entry["extras"]["relook"]["geometry"] = name;
+        entry["extras"]["relook"]["geometry"] = geometry_keys.contains(name) ? geometry_keys.at(name) : name;
         if (entry.contains("primitives"))
           for (Json& primitive : entry["primitives"]) primitive.erase("extensions");  // variants of the asset's own
       }
-      if (section == Section::skins) entry["extras"]["relook"]["inverseBinds"] = name;
+      if (section == Section::skins)
+        entry["extras"]["relook"]["inverseBinds"] = skin_keys.contains(name) ? skin_keys.at(name) : name;
       if (section == Section::nodes) {
         entry.erase("camera");
-        if (document().instances.contains(name)) entry["extras"]["relook"]["instances"] = name;
+        if (const auto key = instance_keys.find(name); key != instance_keys.end())
+          entry["extras"]["relook"]["instances"] = key->second;
       }
       add_entry(section_text, name, std::move(entry));
     }

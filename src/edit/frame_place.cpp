@@ -26,5 +26,6 @@ std::string step_label(const FramePlace& place) {
 
 std::string frame_name(const FramePlace& place) { return numbered("frames", place, ".exr"); }
 std::string preview_name(const FramePlace& place) { return numbered("previews", place, ".png"); }
+std::string relight_name(const FramePlace& place) { return numbered("relight", place, ".exr"); }
 
 }  // namespace relook

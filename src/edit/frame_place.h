@@ -18,5 +18,6 @@ struct FramePlace {
 /// "frames/0003.exr", "frames/0003_01.exr".
 [[nodiscard]] std::string frame_name(const FramePlace& place);
 [[nodiscard]] std::string preview_name(const FramePlace& place);
+[[nodiscard]] std::string relight_name(const FramePlace& place);
 
 }  // namespace relook

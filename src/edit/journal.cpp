@@ -1,21 +1,17 @@
 #include "edit/journal.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "base/hash.h"
 #include "edit/step_errors.h"
+#include "edit/wedge/read_wedge.h"
 
 namespace relook {
 namespace {
 
 constexpr std::array<std::string_view, 6> kOperations{"add", "remove", "replace", "move", "copy", "test"};
-
-std::string read_pointer(const JsonView& view) {
-  std::string pointer = view.text();
-  if (!pointer.empty()) (void)split_pointer(pointer, view.file(), view.pointer());
-  return pointer;
-}
 
 PatchOperation read_operation(const JsonView& view) {
   PatchOperation operation;
@@ -56,87 +52,63 @@ std::vector<std::string> read_selection(const JsonView& view) {
   return selection;
 }
 
-/// Counts the frames of a journal as they are read.
-class FrameCount {
- public:
-  /// Throws JournalLimitError at `place`, which asks for `frames` more, when these are too many.
-  void add(std::size_t frames, const JsonView& place) {
-    if (frames > kMostFrames - frames_)
-      throw JournalLimitError(
-          place.file(), place.pointer(),
-          "with this the journal has more than " + std::to_string(kMostFrames) + " frames, the most that one may have");
-    frames_ += frames;
-  }
-
- private:
-  std::size_t frames_ = 0;
-};
-
-constexpr double kLargestOfRange = 1e30;
-
-void require_range_value(const JsonView& value) { (void)value.number(-kLargestOfRange, kLargestOfRange); }
-
-void read_range(const JsonView& range, FrameCount& frames, Wedge& wedge) {
-  constexpr std::array<std::string_view, 3> kKeys{"from", "to", "count"};
-  constexpr std::size_t kMostNumbers = 16;  // of one value: a matrix
-  constexpr std::int64_t kMostCount = 1'000'000'000'000;
-  range.only_keys(kKeys);
-  const JsonView from = range.at("from"), to = range.at("to"), count = range.at("count");
-  wedge.count = static_cast<std::size_t>(count.integer(2, kMostCount));
-  if (from.value().is_array()) {
-    to.require_array();
-    if (from.size() > kMostNumbers) from.fail("expected at most " + std::to_string(kMostNumbers) + " numbers");
-    if (to.size() != from.size()) to.fail("expected as many numbers as in \"from\"");
-    for (std::size_t k = 0; k < from.size(); ++k) {
-      require_range_value(from.at(k));
-      require_range_value(to.at(k));
-    }
-  } else {
-    require_range_value(from);
-    require_range_value(to);
-  }
-  frames.add(wedge.count, count);
-  wedge.from = from.value();
-  wedge.to = to.value();
+Annotations read_annotations(const JsonView& view) {
+  Annotations said;
+  if (view.has("note")) said.note = view.at("note").text();
+  if (view.has("author")) said.author = view.at("author").text();
+  if (view.has("extras")) said.extras = view.at("extras").value();
+  return said;
 }
 
-Wedge read_wedge(const JsonView& view, FrameCount& frames) {
-  constexpr std::array<std::string_view, 3> kKeys{"path", "values", "range"};
-  view.only_keys(kKeys);
-  if (view.has("values") == view.has("range")) view.fail("a wedge has either \"values\" or \"range\"");
-  Wedge wedge;
-  wedge.path = read_pointer(view.at("path"));
-  wedge.where = view.pointer();
-  if (view.has("range")) {
-    read_range(view.at("range"), frames, wedge);
-    return wedge;
+constexpr std::string_view kBase = "base";
+
+/// The numbers of the steps, from 1, by their names.
+using StepNumbers = std::map<std::string, std::vector<std::uint32_t>>;
+
+StepNumbers numbers_by_name(const JsonView& steps) {
+  StepNumbers numbers;
+  for (std::uint32_t i = 0; i < steps.size(); ++i) {
+    const Json& step = steps.value()[i];
+    const bool has_name = step.is_object() && step.contains("name") && step["name"].is_string();
+    numbers[has_name ? step["name"].get<std::string>() : "step " + std::to_string(i + 1)].push_back(i + 1);
   }
-  const JsonView list = view.at("values");
-  list.require_array();
-  if (list.size() == 0) list.fail("expected at least one value");
-  frames.add(list.size(), list);
-  wedge.count = list.size();
-  wedge.values = list.value().get_ref<const Json::array_t&>();
-  return wedge;
+  return numbers;
 }
 
-JournalStep read_step(const JsonView& view, std::size_t number, FrameCount& frames) {
-  constexpr std::array<std::string_view, 5> kKeys{"name", "edit", "select", "drag", "wedge"};
-  view.only_keys(kKeys);
-  JournalStep step;
-  step.where = view.pointer();
-  step.name = view.has("name") ? view.at("name").text() : "step " + std::to_string(number);
+/// The number of the step that `from` of the step with index `end` means.
+std::uint32_t read_from(const JsonView& from, const StepNumbers& numbers, std::size_t end) {
+  if (!from.value().is_string() && !from.value().is_number())
+    from.fail("expected \"base\", or the name or number of an earlier step");
+  if (!from.value().is_string()) return static_cast<std::uint32_t>(from.integer(0, static_cast<std::int64_t>(end)));
+  const std::string name = from.text();
+  if (name == kBase) return 0;
+  const auto found = numbers.find(name);
+  if (found == numbers.end() || found->second.front() > end) {
+    if (found != numbers.end()) from.fail("step \"" + name + "\" is not before this one");
+    std::vector<std::string> known{std::string(kBase)};
+    for (const auto& [other, places] : numbers)
+      if (places.front() <= end) known.push_back(other);
+    const std::string near = nearest_name(name, known);
+    from.fail("no earlier step \"" + name + "\"" + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+  }
+  if (found->second.size() > 1 && found->second[1] <= end)
+    from.fail("two earlier steps are called \"" + name + "\"; say its number");
+  return found->second.front();
+}
+
+/// What the frames of a step are made by.
+void read_form(const JsonView& view, FrameCount& frames, JournalStep& step) {
   const bool has_edit = view.has("edit"), has_drag = view.has("drag");
   if (view.has("wedge")) {
-    if (has_edit || has_drag || view.has("select")) view.fail("a step with \"wedge\" has nothing else");
+    if (has_edit || has_drag || view.has("select")) view.fail("a step with \"wedge\" has no other edits");
     step.wedge = read_wedge(view.at("wedge"), frames);
-    return step;
+    return;
   }
   if (has_edit && (has_drag || view.has("select"))) view.fail("a step has either \"edit\" or \"select\" and \"drag\"");
   if (has_edit) {
     frames.add(1, view);
     step.edit = read_edit(view.at("edit"));
-    return step;
+    return;
   }
   if (!has_drag && !view.has("select")) view.fail("a step needs \"edit\", \"wedge\", or \"select\" and \"drag\"");
   step.select = read_selection(view.at("select"));
@@ -145,6 +117,24 @@ JournalStep read_step(const JsonView& view, std::size_t number, FrameCount& fram
   if (drag.size() == 0) drag.fail("a drag needs at least one entry");
   frames.add(drag.size(), drag);
   for (std::size_t i = 0; i < drag.size(); ++i) step.drag.push_back(read_edit(drag.at(i)));
+}
+
+/// The step with an index from 0.
+JournalStep read_step(const JsonView& steps, const StepNumbers& numbers, std::size_t index, FrameCount& frames) {
+  constexpr std::array<std::string_view, 10> kKeys{"name", "edit", "select", "drag",   "wedge",
+                                                   "from", "keep", "note",   "author", "extras"};
+  const JsonView view = steps.at(index);
+  view.only_keys(kKeys);
+  JournalStep step;
+  step.where = view.pointer();
+  step.name = view.has("name") ? view.at("name").text() : "step " + std::to_string(index + 1);
+  step.said = read_annotations(view);
+  if (view.has("from")) step.from = read_from(view.at("from"), numbers, index);
+  read_form(view, frames, step);
+  if (view.has("keep")) {
+    if (step.form() == StepForm::edit) view.at("keep").fail("only a wedge or a drag has \"keep\"");
+    step.keep = view.at("keep").boolean();
+  }
   return step;
 }
 
@@ -162,30 +152,7 @@ std::string journal_name(const std::filesystem::path& path) {
   return name.empty() || name == "." || name == ".." ? "journal" : name;
 }
 
-double between(double from, double to, std::size_t i, std::size_t count) {
-  return i + 1 == count ? to : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
-}
-
 }  // namespace
-
-Edit Wedge::operator[](std::size_t i) const {
-  PatchOperation operation;
-  operation.path = path;
-  operation.where = where;
-  operation.value_where = where + (values.empty() ? "/range" : "/values/" + std::to_string(i));
-  if (!values.empty()) {
-    operation.value = values[i];
-  } else if (from.is_array()) {
-    operation.value = Json::array();
-    for (std::size_t k = 0; k < from.size(); ++k)
-      operation.value.push_back(between(from[k].get<double>(), to[k].get<double>(), i, count));
-  } else {
-    operation.value = between(from.get<double>(), to.get<double>(), i, count);
-  }
-  Edit edit;
-  edit.push_back(std::move(operation));
-  return edit;
-}
 
 StepForm JournalStep::form() const {
   return !drag.empty() ? StepForm::drag : !wedge.empty() ? StepForm::wedge : StepForm::edit;
@@ -227,7 +194,8 @@ Journal read_journal(const std::filesystem::path& path, const WhileWaiting& whil
 }
 
 Journal parse_journal(std::string_view text, const std::filesystem::path& path) {
-  constexpr std::array<std::string_view, 3> kKeys{"relook", "steps", "generated"};
+  constexpr std::array<std::string_view, 7> kKeys{"relook", "steps",  "generated", "$schema",
+                                                  "note",   "author", "extras"};
   constexpr std::array<std::string_view, 1> kVersions{"journal/1"};
   Journal journal;
   journal.path = path;
@@ -239,15 +207,32 @@ Journal parse_journal(std::string_view text, const std::filesystem::path& path) 
   const JsonView view(json, journal.file);
   view.only_keys(kKeys);
   (void)view.at("relook").one_of(kVersions);
-  if (view.has("generated")) (void)view.at("generated").text();
+  for (const char* key : {"generated", "$schema"})
+    if (view.has(key)) (void)view.at(key).text();
+  journal.said = read_annotations(view);
   const JsonView steps = view.at("steps");
   steps.require_array();
   StepErrors errors(journal.file);
   FrameCount frames;
+  const StepNumbers numbers = numbers_by_name(steps);
   for (std::size_t i = 0; i < steps.size(); ++i)
-    errors.is_sound([&] { journal.steps.push_back(read_step(steps.at(i), i + 1, frames)); });
+    errors.is_sound([&] { journal.steps.push_back(read_step(steps, numbers, i, frames)); });
   errors.require_none();
   return journal;
+}
+
+Json text_or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
+
+Json patch_json(const Edit& edit) {
+  Json list = Json::array();
+  for (const PatchOperation& operation : edit) {
+    Json entry{{"op", kOperations[static_cast<std::size_t>(operation.op)]}, {"path", operation.path}};
+    const bool has_from = operation.op == PatchOp::move || operation.op == PatchOp::copy;
+    if (has_from) entry["from"] = operation.from;
+    if (!has_from && operation.op != PatchOp::remove) entry["value"] = operation.value;
+    list.push_back(std::move(entry));
+  }
+  return list;
 }
 
 Edit parse_patch(std::string_view text, std::string_view file) {

@@ -3,39 +3,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/json.h"
 #include "base/system/standard_input.h"
+#include "edit/patch_operation.h"
+#include "edit/wedge/wedge.h"
 
 namespace relook {
-
-enum class PatchOp : std::uint8_t { add, remove, replace, move, copy, test };
-
-struct PatchOperation {
-  PatchOp op = PatchOp::replace;
-  std::string path;         // as written
-  std::string from;         // move, copy
-  Json value;               // add, replace, test
-  std::string where;        // pointer into the journal: "/steps/3/edit/0"; its path is below it
-  std::string value_where;  // pointer to the value: "/steps/3/edit/0/value"
-};
-using Edit = std::vector<PatchOperation>;
-
-/// One parameter, one value a frame; the last value stays in the scene. A frame's edit is made when it is asked for: a
-/// wedge takes the memory of its text, whatever its count.
-struct Wedge {
-  std::string path;
-  std::vector<Json> values;  // empty for a range
-  Json from, to;             // a range: numbers or arrays of as many numbers
-  std::size_t count = 0;     // of frames
-  std::string where;         // "/steps/3/wedge"
-  [[nodiscard]] bool empty() const { return count == 0; }
-  [[nodiscard]] std::size_t size() const { return count; }
-  /// A "replace" of the value; of a range, `i` of `count` evenly spaced ones from `from` to `to`.
-  [[nodiscard]] Edit operator[](std::size_t i) const;
-};
 
 /// The most frames a journal may have, of all its steps together.
 inline constexpr std::size_t kMostFrames = 1'000'000;
@@ -43,8 +20,20 @@ inline constexpr std::size_t kMostFrames = 1'000'000;
 /// What the frames of a step are made by: its one edit, the entries of a drag or the values of a wedge.
 enum class StepForm : std::uint8_t { edit, drag, wedge };
 
+/// What people write beside what is to be done: of a journal, and of a step.
+struct Annotations {
+  std::string note, author;  // "": none
+  Json extras;               // anything; null: none
+};
+
+/// A text, or null where there is none.
+[[nodiscard]] Json text_or_null(const std::string& text);
+
 struct JournalStep {
   std::string name;
+  Annotations said;
+  std::optional<std::uint32_t> from;  // starts from the state after this earlier step, 0: base; none: the one before
+  bool keep = true;                   // false: after a drag or wedge the scene is as it was before
   Edit edit;                        // empty for a drag and a wedge
   std::vector<std::string> select;  // drag: "/nodes/<name>" pointers
   std::vector<Edit> drag;           // one frame each; where the last one puts the selection it stays
@@ -62,6 +51,7 @@ struct Journal {
   std::filesystem::path path;  // where it was read; assets and images it names lie below its folder or a --root
   std::string file;            // as named by the user, for messages
   std::string name;            // file name without extension: safe as one component of a path, at most 200 bytes
+  Annotations said;
   std::string text;            // its bytes
   std::string hash;            // XXH3-128 of the bytes
   std::vector<JournalStep> steps;

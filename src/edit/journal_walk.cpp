@@ -24,8 +24,11 @@ JournalEvent JournalWalk::Iterator::operator*() const {
   const std::size_t frames = step.frames();
   const bool is_end = event_ == frames;
   const std::size_t frame = is_end ? frames - 1 : event_;
-  return {is_end ? kind_of_end(step.form()) : kind_of_frame(step.form()), place_of(*journal_, step_, frame), frame,
-          &step};
+  JournalEvent event{is_end ? kind_of_end(step.form()) : kind_of_frame(step.form()), place_of(*journal_, step_, frame),
+                     frame, &step, std::nullopt};
+  if (const std::uint32_t start = state_before(*journal_, step_); event_ == 0 && start + 1 != step_)
+    event.back_to = start;
+  return event;
 }
 
 JournalWalk::Iterator& JournalWalk::Iterator::operator++() {
@@ -34,6 +37,15 @@ JournalWalk::Iterator& JournalWalk::Iterator::operator++() {
   ++step_;
   event_ = 0;
   return *this;
+}
+
+std::uint32_t state_before(const Journal& journal, std::uint32_t step) {
+  return state_after(journal, journal.steps[step - 1].from.value_or(step - 1));
+}
+
+std::uint32_t state_after(const Journal& journal, std::uint32_t step) {
+  while (step != 0 && !journal.steps[step - 1].keep) step = journal.steps[step - 1].from.value_or(step - 1);
+  return step;
 }
 
 std::size_t frames_in(const Journal& journal, std::uint32_t step) {

@@ -3,14 +3,14 @@
 // blame, inspect, render, the rehearsal of a journal and the hashes of its edits all follow it. Events are made one at
 // a time, and an edit when it is asked for: a wedge of a million values takes the memory of its text.
 //
-// An edit is made of the scene as the event before left it, and a step starts with what the one before it left: its
-// last frame. Were a step to start elsewhere, or to leave something else (a wedge that is taken back),
-// JournalWalk::Iterator would say so, by an event of one more kind before the step's first frame or after its last. All
-// who follow a walk switch over the kinds without a default, as follow_edits() does: the compiler names those that lack
-// one. A step with other frames is one more StepForm, in JournalStep::frames() and edit_of().
+// An edit is made of the scene as the event before left it. A step that starts elsewhere, since it says so (`from`) or
+// since the one before it is put back (`keep`), says where in its first frame: back_to (edit/scene_history.h goes
+// there). All who follow a walk switch over the kinds without a default, as follow_edits() does: the compiler names
+// those that lack one. A step with other frames is one more StepForm, in JournalStep::frames() and edit_of().
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "edit/frame_place.h"
@@ -23,7 +23,7 @@ enum class EventKind : std::uint8_t {
   edit,       // an edit is made, a step's only one or a value of a wedge; then there is a frame
   drag,       // an edit of what is being dragged is made; then there is a frame
   release,    // what was dragged is let go where the last frame put it
-  wedge_end,  // a wedge is over: its last value stays in the scene
+  wedge_end,  // a wedge is over: its last value stays in the scene, unless the next step goes back
 };
 
 struct JournalEvent {
@@ -31,12 +31,15 @@ struct JournalEvent {
   FramePlace place;                   // release, wedge_end: of the step's last frame
   std::size_t frame = 0;              // the same within the step, from 0
   const JournalStep* step = nullptr;  // base: none
+  std::optional<std::uint32_t> back_to;  // of a first frame: its step starts in the state after this one, 0: base
 
   /// Whether there is a frame; the other events end a drag or wedge as a whole.
   [[nodiscard]] bool has_frame() const {
     return kind == EventKind::base || kind == EventKind::edit || kind == EventKind::drag;
   }
   [[nodiscard]] bool is_first_frame() const { return has_frame() && frame == 0; }
+  /// Requires: edit or drag.
+  [[nodiscard]] bool is_last_frame() const { return frame + 1 == step->frames(); }
   /// Requires: edit or drag.
   [[nodiscard]] Edit edit() const { return step->edit_of(frame); }
 };
@@ -82,11 +85,16 @@ void follow_edits(const JournalWalk& walk, const Visit& visit) {
         break;
       case EventKind::base:
       case EventKind::release:    // what was dragged stays where it is
-      case EventKind::wedge_end:  // the last value of the wedge stays in the scene
+      case EventKind::wedge_end:
         break;
     }
   }
 }
+
+// States. The one after a step is that of its last frame, or, if it is put back, the one before it.
+/// The step whose last frame a step starts from; 0: the scene before any edit.
+[[nodiscard]] std::uint32_t state_before(const Journal& journal, std::uint32_t step);
+[[nodiscard]] std::uint32_t state_after(const Journal& journal, std::uint32_t step);
 
 // Single frames. `step`: of the journal, from 1; 0: the frame before any edit. `frame`: within it, from 0.
 [[nodiscard]] std::size_t frames_in(const Journal& journal, std::uint32_t step);

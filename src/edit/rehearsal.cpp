@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "edit/apply.h"
+#include "edit/guide/path_hints.h"
 #include "edit/journal_walk.h"
+#include "edit/scene_history.h"
 #include "edit/step_errors.h"
 #include "edit/transaction.h"
 
@@ -28,7 +30,8 @@ class Rehearsal {
         journal_(journal),
         counts_(state.slot_counts()),
         done_(state, journal.file, journal.path.parent_path()),
-        errors_(journal.file) {}
+        errors_(journal.file),
+        history_(journal) {}
 
   /// Whether at least one step changes more than colours. Requires a journal without errors.
   [[nodiscard]] bool finds_class_beyond_color() {
@@ -57,6 +60,7 @@ class Rehearsal {
       warnings_.push_back(journal_.file + ": " + std::to_string(more) +
                           (more == 1 ? " more step changes nothing" : " more steps change nothing"));
     }
+    for (std::string& slip : slip_warnings(journal_)) warnings_.push_back(std::move(slip));
     return std::move(warnings_);
   }
 
@@ -68,14 +72,17 @@ class Rehearsal {
     try {
       const bool is_sound = errors_.is_sound([&] {
         follow_edits(JournalWalk(journal_, number, number), [&](const JournalEvent& event) {
+          if (event.back_to) note(transaction.restore(history_.values_at(*event.back_to, state_.document())));
           if (event.kind == EventKind::drag) check_drag_scope(state_, *event.step, event.frame, journal_.file);
           const SceneDelta delta = transaction.apply(event.edit());
           changes_scene = changes_scene || !delta.empty();
-          if (notes_classes_ && !is_beyond_color_)
-            is_beyond_color_ = classify(state_.scene(), delta).change != ChangeClass::color;
+          note(delta);
         });
       });
-      if (!is_sound) return transaction.undo();
+      if (!is_sound) {
+        transaction.undo();
+        return history_.end_step(number, state_.document());
+      }
     } catch (...) {
       transaction.undo();
       throw;
@@ -83,7 +90,15 @@ class Rehearsal {
     is_change_ = is_change_ || changes_scene;
     const JournalStep& step = journal_.steps[number - 1];
     if (!changes_scene && !is_guard(step)) warn(step, transaction.has_changes());
+    if (const std::uint32_t start = state_before(journal_, number); start + 1 != number) history_.went_back(start);
+    history_.note(transaction);
+    history_.end_step(number, state_.document());
     done_.absorb(std::move(transaction));
+  }
+
+  void note(const SceneDelta& delta) {
+    if (notes_classes_ && !is_beyond_color_)
+      is_beyond_color_ = classify(state_.scene(), delta).change != ChangeClass::color;
   }
 
   void warn(const JournalStep& step, bool changes_document) {
@@ -102,6 +117,7 @@ class Rehearsal {
   const SlotCounts counts_;
   Transaction done_;  // all sound steps so far
   StepErrors errors_;
+  SceneHistory history_;
   std::vector<std::string> warnings_;
   std::size_t idle_steps_ = 0;  // that change nothing
   bool notes_classes_ = false, is_beyond_color_ = false, is_change_ = false;

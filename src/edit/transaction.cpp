@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "edit/guide/path_hints.h"
+#include "edit/wildcard.h"
 #include "scene/look/look_check.h"
 #include "scene/look/look_names.h"
 
@@ -56,12 +58,7 @@ SceneDelta Transaction::apply(const Edit& edit) {
   touched_nodes_.clear();
   grown_.clear();
   try {
-    for (const PatchOperation& operation : edit) {
-      done.push_back({&operation, resolve(operation.path, {file_, operation.where + "/path"}), {}});
-      if (operation.op == PatchOp::move || operation.op == PatchOp::copy)
-        done.back().from = resolve(operation.from, {file_, operation.where + "/from"});
-      run(done.back());
-    }
+    for (const PatchOperation& operation : edit) run(operation, done);
     return state_.recompile({touched_.begin(), touched_.end()}, file_);
   } catch (const LookError& error) {
     give_up();
@@ -72,41 +69,12 @@ SceneDelta Transaction::apply(const Edit& edit) {
   }
 }
 
-void Transaction::undo() {
-  restore_document();
-  touched_earlier_.merge(std::exchange(touched_, {}));
-  if (!touched_earlier_.empty()) (void)state_.recompile({touched_earlier_.begin(), touched_earlier_.end()}, file_);
-}
-
 /// After a refused edit: the document gets its earlier values, and what the edit touched is forgotten. It has not been
 /// compiled, and may have names that no compiler takes.
 void Transaction::give_up() {
   restore_document();
   touched_.clear();
   touched_nodes_.clear();
-}
-
-void Transaction::absorb(Transaction&& later) {
-  for (auto& entry : later.before_)
-    if (saved_.insert(entry.first).second) before_.push_back(std::move(entry));
-  touched_earlier_.merge(later.touched_);
-  touched_earlier_.merge(later.touched_earlier_);
-  const auto append = [](std::vector<std::string>& names, std::vector<std::string>& more) {
-    std::ranges::move(more, std::back_inserter(names));
-  };
-  append(new_geometry_, later.new_geometry_);
-  append(new_images_, later.new_images_);
-  append(new_instances_, later.new_instances_);
-  append(new_inverse_binds_, later.new_inverse_binds_);
-  copied_ += later.copied_;
-}
-
-bool Transaction::has_changes() {
-  return std::ranges::any_of(before_, [&](const auto& entry) {
-    const auto& [entity, before] = entry;
-    const Json* now = find(entity);
-    return (now != nullptr) != before.has_value() || (now != nullptr && *now != *before);
-  });
 }
 
 Tokens Transaction::resolve(const std::string& pointer, const PatchPlace& place) const {
@@ -123,11 +91,29 @@ Tokens Transaction::resolve(const std::string& pointer, const PatchPlace& place)
   return tokens;
 }
 
+/// Runs an operation, a replace with wildcards once for each name that they match.
+void Transaction::run(const PatchOperation& operation, std::vector<Resolved>& done) {
+  const PatchPlace place{file_, operation.where + "/path"};
+  for (const std::string& path : matching_paths(state_.document(), operation, place)) {
+    done.push_back({&operation, resolve(path, place), {}});
+    if (operation.op == PatchOp::move || operation.op == PatchOp::copy)
+      done.back().from = resolve(operation.from, {file_, operation.where + "/from"});
+    run(done.back());
+  }
+}
+
 void Transaction::run(Resolved& resolved) {
   const PatchOperation& operation = *resolved.operation;
   const PatchPlace place{file_, operation.where + "/path"}, from_place{file_, operation.where + "/from"};
   Json& look = document().look;
   Tokens& path = resolved.path;
+  const bool makes_place = operation.op == PatchOp::add || operation.op == PatchOp::move || operation.op == PatchOp::copy;
+  const bool is_new_entry = makes_place && path.size() == 2;  // it need not be there, whatever its name is like
+  for (const Tokens* tokens : {&resolved.path, &resolved.from}) {
+    if (tokens == &path && is_new_entry) continue;
+    if (const std::string hint = path_hint(document(), *tokens); !hint.empty())
+      throw InputError(file_, tokens == &path ? place.where : from_place.where, hint);
+  }
   if (operation.op == PatchOp::test) return run_test(resolved, place);
   const std::string& camera = state_.scene().camera.node;
   for (const Tokens* tokens : {&resolved.path, operation.op == PatchOp::move ? &resolved.from : &resolved.path})
@@ -141,7 +127,10 @@ void Transaction::run(Resolved& resolved) {
       break;
     case PatchOp::replace:
       require_shallow(operation.value, path.size(), file_, operation.value_where);
-      replaced_value(path, place) = operation.value;
+      if (operation.may_create && existing_depth(look, path) + 1 == path.size() && field_of(path, path.size()) != nullptr)
+        add_at(look, path, operation.value, place);
+      else
+        replaced_value(path, place) = operation.value;
       break;
     case PatchOp::remove:
       (void)value_at(look, path, place);
@@ -219,17 +208,7 @@ Json& Transaction::replaced_value(const Tokens& path, const PatchPlace& place) {
   throw InputError(place.file, place.where, "no \"" + path[depth] + "\" in " + parent + " (use add)");
 }
 
-Json* Transaction::find(const TouchedEntity& entity) {
-  Json& look = document().look;
-  if (entity.section.empty()) return &look;
-  if (!look.is_object()) return nullptr;
-  const auto section = look.find(entity.section);
-  if (section == look.end()) return nullptr;
-  if (entity.name.empty()) return &*section;
-  if (!section->is_object()) return nullptr;
-  const auto found = section->find(entity.name);
-  return found == section->end() ? nullptr : &*found;
-}
+Json* Transaction::find(const TouchedEntity& entity) { return const_cast<Json*>(find_entry(document().look, entity)); }
 
 void Transaction::touch(const TouchedEntity& entity) {
   if (entity.section.empty() || (section_of(entity.section) && entity.name.empty()))
@@ -304,40 +283,6 @@ void Transaction::normalize_entity(const TouchedEntity& entity, const Resolved& 
       value->contains(kModel))
     (*value)[kModel] = value->contains(kUnlit) ? "unlit" : "metallic-roughness";
   fill_defaults(*section, *value);
-}
-
-void Transaction::restore_document() {
-  Json& look = document().look;
-  for (auto entry = before_.rbegin(); entry != before_.rend(); ++entry) {
-    const auto& [section, name] = entry->first;
-    std::optional<Json>& value = entry->second;
-    if (section.empty()) {
-      look = std::move(*value);
-      continue;
-    }
-    if (!look.is_object()) continue;
-    if (name.empty()) {
-      if (value)
-        look[section] = std::move(*value);
-      else
-        look.erase(section);
-      continue;
-    }
-    // A section that is no object any more was itself touched, and comes back whole.
-    if (!look.contains(section) || !look[section].is_object()) continue;
-    if (value)
-      look[section][name] = std::move(*value);
-    else
-      look[section].erase(name);
-  }
-  before_.clear();
-  copied_ = {};
-  Assets& assets = *document().assets;
-  assets.meshes.erase(assets.meshes.begin() + static_cast<std::ptrdiff_t>(mesh_count_), assets.meshes.end());
-  for (const std::string& geometry : new_geometry_) assets.mesh_primitives.erase(geometry);
-  for (const std::string& image : new_images_) assets.images.erase(image);
-  for (const std::string& instances : new_instances_) document().instances.erase(instances);
-  for (const std::string& skin : new_inverse_binds_) document().inverse_binds.erase(skin);
 }
 
 /// Says which operation wrote the value that the compiler refuses.

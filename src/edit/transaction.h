@@ -3,6 +3,7 @@
 // an entry that all of them touch is kept once. Used by apply_edit and by the rehearsal of a journal.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -17,6 +18,12 @@
 
 namespace relook {
 
+/// Entries of a look document and their values; none: no such entry.
+using EntryValues = std::vector<std::pair<TouchedEntity, std::optional<Json>>>;
+
+/// The value of an entry: of a section's, or of what has no sections ("scene", ""). Null: there is none.
+[[nodiscard]] const Json* find_entry(const Json& look, const TouchedEntity& entity);
+
 class Transaction {
  public:
   Transaction(SceneState& state, std::string_view file, std::filesystem::path folder);
@@ -24,10 +31,15 @@ class Transaction {
   /// Applies an edit. On InputError document and assets are as before the first edit of this transaction, and the
   /// scene as before this edit; undo() takes back what earlier edits did to the scene.
   SceneDelta apply(const Edit& edit);
+  /// Gives entries the values that they had in an earlier state of this document.
+  SceneDelta restore(const EntryValues& values);
   /// Takes back all that was applied: document, assets and scene get their earlier values.
   void undo();
   /// Whether the edits that were applied left any entry of the document other than it was.
   [[nodiscard]] bool has_changes();
+  /// Calls `visit` for each entry that was touched, single entries of whole sections, with its value before (null:
+  /// none).
+  void visit_touched(const std::function<void(const TouchedEntity&, const Json*)>& visit) const;
   /// From now on what `earlier` has copied counts against what a journal may copy, too.
   void count_after(const Transaction& earlier) { copied_before_ = earlier.copied_; }
   /// Takes over a transaction that came after this one: undo() takes back both.
@@ -41,6 +53,7 @@ class Transaction {
   };
 
   // transaction.cpp
+  void run(const PatchOperation& operation, std::vector<Resolved>& done);
   [[nodiscard]] Tokens resolve(const std::string& pointer, const PatchPlace& place) const;
   void run(Resolved& resolved);
   /// What a replace overwrites. A member that its schema marks as unwritten (scene/look/look_schema.h: light range,
@@ -88,7 +101,7 @@ class Transaction {
   std::set<std::string> touched_nodes_;      // of these the nodes that it has not removed since
   std::set<TouchedEntity> touched_earlier_;  // by those before it in this transaction
   std::set<TouchedEntity> saved_;  // those that before_ has
-  std::vector<std::pair<TouchedEntity, std::optional<Json>>> before_;  // in the order of touching
+  EntryValues before_;             // in the order of touching
   Extent copied_before_, copied_;          // by "copy", in earlier transactions and in this one
   std::map<TouchedEntity, Extent> grown_;  // entries that copies were made into, as they are then
   std::size_t mesh_count_;

@@ -13,6 +13,8 @@ namespace {
 
 const Json::json_pointer kGeometry("/extras/relook/geometry");
 const Json::json_pointer kInverseBinds("/extras/relook/inverseBinds");
+const Json::json_pointer kContent("/extras/relook/content");
+const Json::json_pointer kInstances("/extras/relook/instances");
 
 bool equal(const Mesh& a, const Mesh& b) {
   return a.primitive == b.primitive && a.positions == b.positions && a.triangles == b.triangles &&
@@ -107,7 +109,7 @@ class Differ {
       Json from = old == olds.end() ? Json() : editable(section, *old);
       Json to = editable(section, item.value());
       if (section == Section::meshes && !name_geometry(item.key(), to)) continue;
-      if (section == Section::nodes) check_instances(item.key());
+      if (section == Section::nodes) name_instances(item.key(), to);
       if (section == Section::skins) name_inverse_binds(item.key(), to);
       if (from.is_null())
         add_operation("add", {name, item.key()}, std::move(to));
@@ -132,11 +134,14 @@ class Differ {
     return section == Section::lights && from["type"] != to["type"];
   }
 
+  static const EncodedImage& image_of(const LookDocument& document, const std::string& name) {
+    return document.assets->images.at(document.look["images"][name][kContent].get<std::string>());
+  }
+
   void diff_image(const std::string& name) {
-    const auto old = before_.assets->images.find(name);
-    const EncodedImage& image = after_.assets->images.at(name);
-    const bool is_known = before_.look["images"].contains(name) && old != before_.assets->images.end();
-    if (is_known && equal(old->second, image)) return;
+    const EncodedImage& image = image_of(after_, name);
+    const bool is_known = before_.look["images"].contains(name);
+    if (is_known && equal(image_of(before_, name), image)) return;
     if (image.bytes == nullptr) {
       if (!is_known) return add_operation("add", {"images", name}, Json::object());
       throw InputError(after_.file, "", "image \"" + name + "\" has no content any more, which no journal can say");
@@ -156,7 +161,7 @@ class Differ {
         return equal(before_.assets->meshes[a.index()], after_.assets->meshes[b.index()]);
       });
     };
-    auto found = known.find(mesh);
+    auto found = known.find(key_before(Section::meshes, mesh, kGeometry));
     if (found == known.end() || !fits(found->second))
       found = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return fits(entry.second); });
     if (found != known.end()) {
@@ -207,7 +212,7 @@ class Differ {
   void name_inverse_binds(const std::string& skin, Json& value) const {
     const std::vector<Transform>& wanted = after_.inverse_binds.at(value[kInverseBinds].get<std::string>());
     const auto& known = before_.inverse_binds;
-    auto found = known.find(skin);
+    auto found = known.find(key_before(Section::skins, skin, kInverseBinds));
     if (found == known.end() || found->second != wanted)
       found = std::ranges::find_if(known, [&](const auto& entry) { return entry.second == wanted; });
     if (found == known.end())
@@ -216,11 +221,30 @@ class Differ {
     value[kInverseBinds] = found->first;
   }
 
-  void check_instances(const std::string& node) const {
-    const auto now = after_.instances.find(node), then = before_.instances.find(node);
-    if (now == after_.instances.end() || !after_.look["nodes"][node].contains("mesh")) return;
-    if (then == before_.instances.end() || then->second != now->second)
+  /// What the entity of a name has in `before_`; the name itself where there is none.
+  [[nodiscard]] std::string key_before(Section section, const std::string& name,
+                                       const Json::json_pointer& place) const {
+    const Json& entities = before_.look[std::string(section_name(section))];
+    const auto found = entities.find(name);
+    return found != entities.end() && found->contains(place) ? (*found)[place].get<std::string>() : name;
+  }
+
+  /// The instances of a node that shows a mesh; null: it has none.
+  static const std::vector<Transform>* instances_of(const LookDocument& document, const std::string& node) {
+    const auto found = document.look["nodes"].find(node);
+    if (found == document.look["nodes"].end() || !found->contains("mesh") || !found->contains(kInstances))
+      return nullptr;
+    return &document.instances.find((*found)[kInstances].get<std::string>())->second;
+  }
+
+  /// Puts the key that a node's instances have in `before_` into its value.
+  void name_instances(const std::string& node, Json& value) const {
+    const std::vector<Transform>* now = instances_of(after_, node);
+    if (now == nullptr) return;
+    const std::vector<Transform>* then = instances_of(before_, node);
+    if (then == nullptr || *then != *now)
       throw InputError(after_.file, "", "the instances of node \"" + node + "\" differ, which no journal can say");
+    value[kInstances] = key_before(Section::nodes, node, kInstances);
   }
 
   /// What only `before_` has. A node loses its children first, which may be elsewhere now.

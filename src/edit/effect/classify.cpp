@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "edit/apply.h"
-#include "edit/effect.h"
-#include "edit/material_changes.h"
+#include "edit/effect/effect.h"
+#include "edit/effect/material_changes.h"
 
 namespace relook {
 namespace {

@@ -1,4 +1,4 @@
-#include "edit/material_changes.h"
+#include "edit/effect/material_changes.h"
 
 #include <algorithm>
 #include <cstdio>

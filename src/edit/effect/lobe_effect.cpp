@@ -1,4 +1,4 @@
-#include "edit/lobe_effect.h"
+#include "edit/effect/lobe_effect.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
-#include "edit/effect.h"
+#include "edit/effect/effect.h"
 
-#include "edit/lobe_effect.h"
+#include "edit/effect/lobe_effect.h"
 
 namespace relook {
 

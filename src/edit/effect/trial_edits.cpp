@@ -1,4 +1,4 @@
-#include "edit/trial_edits.h"
+#include "edit/effect/trial_edits.h"
 
 #include "base/error.h"
 #include "edit/transaction.h"
