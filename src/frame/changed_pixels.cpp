@@ -21,6 +21,15 @@ void ChangedPixels::add(std::size_t tile, const TileMask& mask) {
   if (!is_empty(mask)) tiles_.push_back({static_cast<std::uint32_t>(tile), mask});
 }
 
+void ChangedPixels::merge(const ChangedPixels& others) {
+  std::map<std::uint32_t, TileMask> masks;
+  for (const Tile& tile : tiles_) masks[tile.tile] = tile.mask;
+  for (const Tile& tile : others.tiles_)
+    for (std::size_t y = 0; y < tile.mask.size(); ++y) masks[tile.tile][y] |= tile.mask[y];
+  tiles_.clear();
+  for (const auto& [tile, mask] : masks) add(tile, mask);
+}
+
 std::size_t ChangedPixels::size() const {
   std::size_t count = 0;
   for (const Tile& tile : tiles_)

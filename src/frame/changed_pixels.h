@@ -27,6 +27,8 @@ class ChangedPixels {
   /// Requires: the tile has not been added yet.
   void add(std::size_t tile, const TileMask& mask);
 
+  void merge(const ChangedPixels& others);
+
   [[nodiscard]] const std::vector<Tile>& tiles() const { return tiles_; }
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] bool empty() const { return tiles_.empty(); }

@@ -16,6 +16,8 @@ class DisplayView {
   [[nodiscard]] virtual Rgba apply(const Rgba& linear) const = 0;
   /// Config, display and view in one text: equal ones show the same.
   [[nodiscard]] virtual std::string id() const = 0;
+  /// For people: "Display, View".
+  [[nodiscard]] virtual std::string name() const = 0;
 };
 
 /// How previews show frames.

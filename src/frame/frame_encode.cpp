@@ -72,12 +72,9 @@ std::uint32_t clipped_in(const Frame& frame, const TileRect& rect) {
 std::string exposure_text(double exposure) { return exposure == 0 ? "" : Json(exposure).dump(); }
 
 ExrAttributes frame_attributes(const FrameMeta& meta) {
-  ExrAttributes attributes{{"relook:scene", meta.scene_hash},
-                           {"relook:edits", meta.edits_hash},
-                           {"relook:step", meta.step},
-                           {"relook:class", meta.change_class},
-                           {"relook:exposure", meta.exposure}};
-  std::erase_if(attributes, [](const auto& attribute) { return attribute.second.empty(); });
+  ExrAttributes attributes;
+  for (const auto& [name, member] : kFrameAttributes)
+    if (!(meta.*member).empty()) attributes.emplace_back(name, meta.*member);
   return attributes;
 }
 

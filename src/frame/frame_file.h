@@ -1,12 +1,14 @@
 // Frames as OpenEXR files (frame/exr_tiles.h): R,G,B,A. The bytes are the same in every run: no dates, no names of
 // hosts. Compressed tiles are kept from step to step, so that a step pays for the tiles that it changed.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/files.h"
@@ -16,15 +18,33 @@
 
 namespace relook {
 
-/// What a frame's header says of its origin: the string attributes relook:scene, relook:edits, relook:step,
-/// relook:class and relook:exposure. Empty ones are left out.
+/// What a frame's header says of its origin: the string attributes relook:scene, relook:edits and so on. Empty ones are
+/// left out.
 struct FrameMeta {
   std::string scene_hash;
   std::string edits_hash;    // of the edits up to this frame (report/edit_hashes.h)
   std::string step;          // "3", "3_01"
   std::string change_class;  // change_class_name()
   std::string exposure;      // exposure_text(): how its previews are exposed; the frame is not
+  std::string name;          // of the step
+  std::string edit;          // the JSON Patch that led here from the frame before, or from where its step starts
+  std::string values;        // of a wedge, as in report.json
+  std::string note, author, extras;  // as the journal has them; extras as JSON
+  bool operator==(const FrameMeta&) const = default;
 };
+/// The attribute of each member.
+inline constexpr std::array<std::pair<std::string_view, std::string FrameMeta::*>, 11> kFrameAttributes{
+    {{"relook:scene", &FrameMeta::scene_hash},
+     {"relook:edits", &FrameMeta::edits_hash},
+     {"relook:step", &FrameMeta::step},
+     {"relook:class", &FrameMeta::change_class},
+     {"relook:exposure", &FrameMeta::exposure},
+     {"relook:name", &FrameMeta::name},
+     {"relook:edit", &FrameMeta::edit},
+     {"relook:values", &FrameMeta::values},
+     {"relook:note", &FrameMeta::note},
+     {"relook:author", &FrameMeta::author},
+     {"relook:extras", &FrameMeta::extras}}};
 /// Stops, as few digits as tell them: "-2.5". "" for none.
 [[nodiscard]] std::string exposure_text(double exposure);
 [[nodiscard]] ExrAttributes frame_attributes(const FrameMeta& meta);

@@ -48,6 +48,20 @@ float value_of(const unsigned char* bytes, std::uint32_t size) {
   return value;
 }
 
+ExrAttributes texts_of(exr_const_context_t file) {
+  std::int32_t count = 0;
+  ExrAttributes texts;
+  if (exr_get_attribute_count(file, 0, &count) != EXR_ERR_SUCCESS) return texts;
+  for (std::int32_t i = 0; i < count; ++i) {
+    const exr_attribute_t* attribute = nullptr;
+    if (exr_get_attribute_by_index(file, 0, EXR_ATTR_LIST_FILE_ORDER, i, &attribute) != EXR_ERR_SUCCESS) continue;
+    if (attribute->type == EXR_ATTR_STRING && attribute->string->length > 0)
+      texts.emplace_back(attribute->name,
+                         std::string(attribute->string->str, static_cast<std::size_t>(attribute->string->length)));
+  }
+  return texts;
+}
+
 }  // namespace
 
 FrameTiles::FrameTiles(Bytes bytes, std::string_view file) : file_(file), bytes_(std::move(bytes)) {
@@ -80,6 +94,7 @@ FrameTiles::FrameTiles(Bytes bytes, std::string_view file) : file_(file), bytes_
   check(exr_get_channels(opened, 0, &channels));
   if (tile_width != kTileSize || tile_height != kTileSize || levels != EXR_TILE_ONE_LEVEL)
     throw InputError(file_, "tiles", "not one level of tiles of " + std::to_string(kTileSize) + " pixels");
+  texts_ = texts_of(opened);
   width_ = static_cast<std::uint32_t>(window.max.x - window.min.x + 1);
   height_ = static_cast<std::uint32_t>(window.max.y - window.min.y + 1);
   for (int i = 0; i < channels->num_channels; ++i) {

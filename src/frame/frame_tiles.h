@@ -24,6 +24,8 @@ class FrameTiles {
 
   [[nodiscard]] std::uint32_t width() const { return width_; }
   [[nodiscard]] std::uint32_t height() const { return height_; }
+  /// The header's attributes that are texts.
+  [[nodiscard]] const ExrAttributes& texts() const { return texts_; }
   /// In the order of the file, which is alphabetical.
   [[nodiscard]] const std::vector<Channel>& channels() const { return channels_; }
   [[nodiscard]] std::size_t count() const { return chunks_.size(); }
@@ -43,6 +45,7 @@ class FrameTiles {
   std::uint32_t width_ = 0, height_ = 0;
   std::size_t pixel_bytes_ = 0;
   std::vector<Channel> channels_;
+  ExrAttributes texts_;
   std::vector<Chunk> chunks_;  // [tile_count]
 };
 

@@ -33,11 +33,6 @@ std::optional<FrameMeta> meta_of(exr_const_context_t file) {
   std::int32_t count = 0;
   if (exr_get_attribute_count(file, 0, &count) != EXR_ERR_SUCCESS) return std::nullopt;
   FrameMeta meta;
-  const std::array<std::pair<std::string_view, std::string*>, 5> texts{{{"relook:scene", &meta.scene_hash},
-                                                                        {"relook:edits", &meta.edits_hash},
-                                                                        {"relook:step", &meta.step},
-                                                                        {"relook:class", &meta.change_class},
-                                                                        {"relook:exposure", &meta.exposure}}};
   bool names_scene = false;
   for (std::int32_t i = 0; i < count; ++i) {
     const exr_attribute_t* attribute = nullptr;
@@ -46,9 +41,9 @@ std::optional<FrameMeta> meta_of(exr_const_context_t file) {
       return std::nullopt;
     const std::string_view name = attribute->name;
     names_scene = names_scene || name == "relook:scene";
-    const auto text = std::ranges::find(texts, name, [](const auto& known) { return known.first; });
-    if (text != texts.end() && attribute->type == EXR_ATTR_STRING && attribute->string->length > 0)
-      text->second->assign(attribute->string->str, static_cast<std::size_t>(attribute->string->length));
+    const auto text = std::ranges::find(kFrameAttributes, name, [](const auto& known) { return known.first; });
+    if (text != kFrameAttributes.end() && attribute->type == EXR_ATTR_STRING && attribute->string->length > 0)
+      (meta.*text->second).assign(attribute->string->str, static_cast<std::size_t>(attribute->string->length));
   }
   return names_scene ? std::optional(std::move(meta)) : std::nullopt;
 }

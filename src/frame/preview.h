@@ -4,6 +4,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -26,6 +27,8 @@ class PreviewEncoder {
   void update(const Frame& frame, const ChangedPixels& changed_pixels);
   /// Deflates the bands of the pixels taken since the last call; the bytes of the file.
   [[nodiscard]] Bytes png();
+  /// What was taken: [height * width * 3], row 0 on top.
+  [[nodiscard]] std::span<const unsigned char> codes() const { return codes_; }
 
  private:
   struct Band {

@@ -36,6 +36,7 @@ struct Counters {
 
 struct Seconds {
   double classify = 0, select = 0, test = 0, update = 0, evaluate = 0, write = 0, total = 0;
+  double cpu = 0;  // of all threads, in total; what is written of the frame before may be among it
 };
 
 /// Bytes held in memory by kind.

@@ -39,8 +39,8 @@ struct LobeShares {
   }
 };
 inline constexpr float kLeastShare = 0.1F;
-/// Of `specular` over a diffuse body, where a coat leaves so much: measured (relook_bench error), under a sky 0.1 costs dark plastics a sixth more
-/// noise, and 0.25 bright ones a thirtieth.
+/// Of `specular` over a diffuse body, where a coat leaves so much: measured (relook_bench error), under a sky 0.1 costs
+/// dark plastics a sixth more noise, and 0.25 bright ones a thirtieth.
 inline constexpr float kLeastSpecularShare = 0.2F;
 
 /// The share of what a boundary reflects, if a half of what it lets through comes back from below.

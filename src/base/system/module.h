@@ -7,4 +7,7 @@ namespace relook {
 /// Throws Error when it is missing, "PURPOSE" being what cannot be done then ("decode images").
 [[nodiscard]] void* module_function(const char* module, const char* function, const char* purpose);
 
+/// Whether the module's file is there.
+[[nodiscard]] bool has_module(const char* module);
+
 }  // namespace relook

@@ -36,6 +36,7 @@ class OcioView final : public relook::DisplayView {
     transform->setView(view.c_str());
     const ocio::ConstProcessorRcPtr processor = config->getProcessor(transform);
     processor_ = processor->getDefaultCPUProcessor();
+    name_ = display + ", " + view;
     id_ = std::string(processor_->getCacheID()) + " " + source + " " + display + " " + view;
   }
   [[nodiscard]] relook::Rgba apply(const relook::Rgba& linear) const override {
@@ -44,10 +45,11 @@ class OcioView final : public relook::DisplayView {
     return value;
   }
   [[nodiscard]] std::string id() const override { return id_; }
+  [[nodiscard]] std::string name() const override { return name_; }
 
  private:
   ocio::ConstCPUProcessorRcPtr processor_;
-  std::string id_;
+  std::string id_, name_;
 };
 
 }  // namespace

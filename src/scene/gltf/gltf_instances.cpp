@@ -1,4 +1,6 @@
 // EXT_mesh_gpu_instancing: one local matrix per instance from the TRANSLATION, ROTATION and SCALE accessors.
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/error.h"
@@ -50,6 +52,20 @@ Transform composed(const float* t, const float* q, const float* s, const JsonVie
   return matrix;
 }
 
+/// Where the axes go, as an export of relook has it beside rotations and scales, which need not come to the same bits;
+/// nothing in other files.
+std::array<std::vector<float>, 3> written_axes(const JsonView& attributes, const GltfModel& model, std::size_t count,
+                                               ImportShare& share) {
+  std::array<std::vector<float>, 3> axes;
+  constexpr std::array<std::string_view, 3> kNames{"_RELOOK_X", "_RELOOK_Y", "_RELOOK_Z"};
+  if (!std::ranges::all_of(kNames, [&](std::string_view name) { return attributes.has(name); })) return axes;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    axes[axis] = instance_values(attributes, model, kNames[axis], 3, false, share);
+    if (axes[axis].size() != count * 3) attributes.fail("TRANSLATION and _RELOOK_X, _Y, _Z differ in count");
+  }
+  return axes;
+}
+
 std::vector<Transform> node_instances(const JsonView& attributes, const GltfModel& model, ImportShare& share) {
   const auto translations = instance_values(attributes, model, "TRANSLATION", 3, false, share);
   const auto rotations = instance_values(attributes, model, "ROTATION", 4, true, share);
@@ -61,12 +77,16 @@ std::vector<Transform> node_instances(const JsonView& attributes, const GltfMode
   if (!fits(translations, 3) || !fits(rotations, 4) || !fits(scales, 3))
     attributes.fail("TRANSLATION, ROTATION and SCALE differ in count");
   constexpr float kNoTranslation[3] = {0, 0, 0}, kNoRotation[4] = {0, 0, 0, 1}, kNoScale[3] = {1, 1, 1};
+  const auto axes = written_axes(attributes, model, count, share);
   std::vector<Transform> instances;
   instances.reserve(count);
   for (std::size_t i = 0; i < count; ++i)
     instances.push_back(composed(translations.empty() ? kNoTranslation : &translations[3 * i],
                                  rotations.empty() ? kNoRotation : &rotations[4 * i],
                                  scales.empty() ? kNoScale : &scales[3 * i], attributes));
+  for (std::size_t axis = 0; axis < axes.size(); ++axis)
+    for (std::size_t i = 0; i < axes[axis].size() / 3; ++i)
+      std::copy_n(&axes[axis][3 * i], 3, instances[i][static_cast<int>(axis)]);
   return instances;
 }
 

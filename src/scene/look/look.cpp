@@ -9,6 +9,7 @@
 #include "scene/look/look_check.h"
 #include "scene/look/look_names.h"
 #include "scene/look/look_schema.h"
+#include "scene/look/sides.h"
 
 namespace relook {
 namespace {
@@ -149,18 +150,6 @@ Json active_scene(const Json& gltf) {
   return scene;
 }
 
-/// Is a material glass with a volume, whose back faces are seen through its front ones? Its values are not checked yet.
-bool is_solid(const Json& material) {
-  const auto is_positive = [&](const char* pointer) {
-    const Json::json_pointer at(pointer);
-    return material.contains(at) && material[at].is_number() && material[at].get<double>() > 0;
-  };
-  const Json::json_pointer model("/extras/relook/model");
-  if (material.contains(model) && material[model] == "blinn-phong") return is_positive("/extras/relook/refraction");
-  return is_positive("/extensions/KHR_materials_volume/thicknessFactor") &&
-         is_positive("/extensions/KHR_materials_transmission/transmissionFactor");
-}
-
 /// What lights of some kinds have and others lack.
 void fill_light(Json& light) {
   constexpr double kAreaIntensity = 1000;  // nits: EXT_lights_area
@@ -239,7 +228,7 @@ LookDocument make_look_document(ImportedGltf imported) {
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (section == Section::skins && !document.inverse_binds.contains(document.order[s][i])) continue;
       Json item = items[i];
-      if (section == Section::materials && item.is_object() && is_solid(item)) item.erase("doubleSided");
+      if (section == Section::materials) resolve_sides(item);
       add_entity(document, section, i, std::move(item));
     }
   }

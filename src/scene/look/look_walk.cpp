@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "scene/look/json_place.h"
+#include "scene/look/look_hints.h"
 #include "scene/look/look_schema.h"
 
 namespace relook {
@@ -93,9 +94,10 @@ class Checker {
     for (const auto& item : value.items()) {
       const std::string& key = item.key();
       if (find_field(schema, key) != nullptr) continue;
-      const std::string near = nearest_name(key, known);
-      throw LookError(file_, place.text() + "/" + escape_token(key),
-                      "unknown key \"" + key + "\"" + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+      const std::string near = nearest_name(key, known), deeper = deeper_place(schema, key);
+      std::string hint = near.empty() ? "" : "; did you mean \"" + near + "\"?";
+      if (!deeper.empty() && deeper != near) hint = "; did you mean " + place.text() + "/" + deeper + "?";
+      throw LookError(file_, place.text() + "/" + escape_token(key), "unknown key \"" + key + "\"" + hint);
     }
     fail(place, "unknown key");
   }
@@ -152,7 +154,7 @@ class Checker {
 
   void number(const SchemaField& field, const Json& value, const JsonPlace& place) const {
     if (!value.is_number()) fail(place, "expected a number, got " + std::string(type_noun(value)));
-    if (!is_allowed(field, value.get<double>())) fail(place, range_fault(field, value));
+    if (!is_allowed(field, value.get<double>())) fail(place, range_fault(field, value) + value_hint(field, value));
   }
 
   void reals(const SchemaField& field, const Json& value, const JsonPlace& place) const {
@@ -160,8 +162,14 @@ class Checker {
       fail(place, "expected an array of numbers, got " + std::string(type_noun(value)));
     if (field.count != 0 && (!value.is_array() || value.size() != field.count))
       fail(place, "expected an array of " + std::to_string(field.count) + " numbers, got " +
-                      (value.is_array() ? std::to_string(value.size()) : std::string(type_noun(value))));
-    for (std::size_t i = 0; i < value.size(); ++i) number(field, value[i], {&place, {}, i});
+                      (value.is_array() ? std::to_string(value.size()) : std::string(type_noun(value))) +
+                      value_hint(field, value));
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      const bool is_number = value[i].is_number();
+      if (is_number && !is_allowed(field, value[i].get<double>()))
+        fail({&place, {}, i}, range_fault(field, value[i]) + value_hint(field, value));
+      number(field, value[i], {&place, {}, i});
+    }
   }
 
   void choice(const SchemaField& field, const Json& value, const JsonPlace& place) const {
