@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "edit/effect.h"
+#include "edit/effect/effect.h"
 #include "trace/box_range.h"
 
 namespace relook {

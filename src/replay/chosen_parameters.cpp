@@ -1,7 +1,7 @@
 #include "replay/chosen_parameters.h"
 
 #include "base/error.h"
-#include "edit/trial_edits.h"
+#include "edit/effect/trial_edits.h"
 #include "replay/change.h"
 #include "trace/ray_scene.h"
 

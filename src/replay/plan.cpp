@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edit/journal_walk.h"
-#include "replay/replay.h"
+#include "replay/journal_replay.h"
 
 namespace relook {
 namespace {
@@ -37,46 +36,29 @@ class ProxyReplay {
   ProxyReplay(SceneState state, const ViewOptions& view) : replayer_(replayer_of(std::move(state), view)) {}
 
   std::vector<PlannedFrame> run(const Journal& journal, const Progress& progress) {
+    JournalReplay replay(journal, replayer_);
     for (const JournalEvent& event : JournalWalk(journal)) {
       if (progress && event.is_first_frame())
         progress(static_cast<double>(event.place.step - 1) / static_cast<double>(journal.steps.size()));
-      follow(event, journal);
+      const StepResult result = replay.follow(event);
+      if (event.kind != EventKind::base) note(journal, event, result);
     }
     return std::move(frames_);
   }
 
  private:
-  void follow(const JournalEvent& event, const Journal& journal) {
-    const std::filesystem::path folder = journal.path.parent_path();
-    switch (event.kind) {
-      case EventKind::base:
-        break;
-      case EventKind::edit:
-        note(event, replayer_.step(event.edit(), journal.file, folder));
-        break;
-      case EventKind::drag:
-        note(event, replayer_.drag(event.edit(), journal.file, folder));
-        break;
-      case EventKind::release:
-        note(event, replayer_.release());
-        break;
-      case EventKind::wedge_end:
-        note(event, {});
-        break;
-    }
-  }
-
   static Replayer replayer_of(SceneState state, const ViewOptions& view) {
     RenderStats stats;
     Image image = preprocess(state.scene(), view, stats);
     return {std::move(state), std::move(image)};
   }
 
-  void note(const JournalEvent& event, const StepResult& result) {
+  void note(const Journal& journal, const JournalEvent& event, const StepResult& result) {
     PlannedFrame frame;
     frame.place = event.place;
     frame.is_whole_step = !event.has_frame();
     frame.name = event.step->name;
+    frame.from = state_before(journal, event.place.step);
     frame.classification = result.classification;
     if (event.is_first_frame()) step_class_ = ChangeClass::color;
     if (frame.is_whole_step) frame.classification.change = step_class_;

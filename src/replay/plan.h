@@ -20,6 +20,7 @@ struct PlannedFrame {
   FramePlace place;
   bool is_whole_step = false;  // of a drag or wedge: the frame is its last one
   std::string name;
+  std::uint32_t from = 0;  // the step in whose state it starts; 0: base
   Classification classification;
   std::uint64_t samples_affected = 0, pixels_changed = 0;
   double seconds = 0;                // of all phases but writing

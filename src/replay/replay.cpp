@@ -32,11 +32,11 @@ struct Replayer::Impl {
   }
 
   /// Applies the edit to the scene and finds what it means.
-  StepChange begin(const Edit& edit, std::string_view file, const std::filesystem::path& folder, StepResult& result) {
+  StepChange begin(const SceneEdit& edit, StepResult& result) {
     parts.residency.begin_change();
-    const SceneDelta delta = apply_edit(parts.state, edit, file, folder);
+    auto [delta, classification] = edit(parts.state);
     const Scene& scene = parts.state.scene();
-    result.classification = classify(scene, delta);
+    result.classification = std::move(classification);
     if (has_atoms()) parts.stored.extend_atoms(parts.atoms());
     // Tunnels hold for the scene in which the trees were made; they are built when a change first needs them.
     StepChange change = find_change(parts.rays, scene, delta, parts.stored.lights());
@@ -114,16 +114,16 @@ struct Replayer::Impl {
 
   [[nodiscard]] bool is_path() const { return parts.image().view.integrator == Integrator::path; }
 
-  StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+  StepResult step(const SceneEdit& edit) {
     if (is_path()) {
-      StepResult result = path_step(parts, edit, file, folder);
+      StepResult result = path_step(parts, edit);
       finish(result);
       return result;
     }
     require(!dragged.has_lifted(), "a drag is released before the next step");
     StepResult result;
     StopWatch watch;
-    StepChange change = begin(edit, file, folder, result);
+    StepChange change = begin(edit, result);
     watch.lap(result.seconds.classify);
     update(change, result, watch);
     finish(result);
@@ -131,11 +131,11 @@ struct Replayer::Impl {
   }
 
   /// Under the path integrator a frame of a drag is a step: nothing is lifted out.
-  StepResult drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
-    if (is_path()) return step(edit, file, folder);
+  StepResult drag(const SceneEdit& edit) {
+    if (is_path()) return step(edit);
     StepResult result;
     StopWatch watch;
-    StepChange change = begin(edit, file, folder, result);
+    StepChange change = begin(edit, result);
     watch.lap(result.seconds.classify);
     if (Drag::is_movement(change)) {
       dragged.show(change, result, watch);
@@ -185,11 +185,13 @@ Resident Replayer::resident() const {
 }
 
 void Replayer::choose_parameters(const std::vector<ParameterSet>& sets) { impl_->choose_parameters(sets); }
+StepResult Replayer::step(const SceneEdit& edit) { return impl_->step(edit); }
 StepResult Replayer::step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
-  return impl_->step(edit, file, folder);
+  return step(scene_edit(edit, file, folder));
 }
+StepResult Replayer::drag(const SceneEdit& edit) { return impl_->drag(edit); }
 StepResult Replayer::drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
-  return impl_->drag(edit, file, folder);
+  return drag(scene_edit(edit, file, folder));
 }
 StepResult Replayer::release() { return impl_->release(); }
 

@@ -8,6 +8,7 @@
 
 #include "cache/residency/residency.h"
 #include "cache/stored_tunnels.h"
+#include "edit/scene_history.h"
 #include "frame/image.h"
 #include "image/regions.h"
 #include "replay/step_result.h"
@@ -45,11 +46,15 @@ class Replayer {
   /// Integrator::path terms of light are kept for all of them together, until an edit of others.
   void choose_parameters(const std::vector<ParameterSet>& sets);
 
-  /// Applies one edit. Throws InputError with everything as before. Not during a drag.
+  /// Applies an edit, such as those of an event of a journal. Throws what it throws, with everything as before. Not
+  /// during a drag.
+  StepResult step(const SceneEdit& edit);
+  /// A patch of the look document, with files below `folder`. Throws InputError.
   StepResult step(const Edit& edit, std::string_view file, const std::filesystem::path& folder);
 
   /// One intermediate frame of a drag (paper 2.2). What the edit moves is taken out of the ray trees when it moves
-  /// first, and then only looked for; release() puts it back in where it is. Throws InputError as step() does.
+  /// first, and then only looked for; release() puts it back in where it is. Throws as step() does.
+  StepResult drag(const SceneEdit& edit);
   StepResult drag(const Edit& edit, std::string_view file, const std::filesystem::path& folder);
   StepResult release();
 

@@ -1,6 +1,7 @@
 #include "report/edit_hashes.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -15,8 +16,6 @@
 namespace relook {
 namespace {
 
-constexpr std::size_t kEntityDepth = 2;  // "/materials/Glass"
-
 /// The file names that a value has under a key of journals that brings in a file.
 void collect_files(const Json& value, std::vector<std::string>& names) {
   for (const auto& [key, part] : value.items()) {
@@ -27,13 +26,18 @@ void collect_files(const Json& value, std::vector<std::string>& names) {
   }
 }
 
+/// Images name no other files; a model may be called anything.
+bool is_image_name(const std::string& name) {
+  return std::ranges::any_of(std::array{".png", ".jpg", ".jpeg", ".webp", ".hdr", ".exr"},
+                             [&](const char* ending) { return name.ends_with(ending); });
+}
+
 /// A file that a journal names, and what it names itself; none when there is no such file.
 std::vector<std::filesystem::path> with_named_files(const Journal& journal, const std::string& name) {
   std::vector<std::filesystem::path> paths;
   try {
     paths.push_back(allowed_path(journal.path.parent_path(), name, journal.file, ""));
-    if (paths.back().extension() == ".gltf" || paths.back().extension() == ".glb")
-      std::ranges::copy(external_files(read_gltf_source(paths.back())), std::back_inserter(paths));
+    if (!is_image_name(name)) std::ranges::copy(external_files(read_gltf_source(paths.back())), std::back_inserter(paths));
   } catch (const InputError&) {  // said by the step itself, or data within the journal
   }
   return paths;
@@ -45,21 +49,6 @@ std::string file_hash(const std::filesystem::path& path) {
   } catch (const InputError&) {
     return "";
   }
-}
-
-bool only_replaces_values(const Edit& edit) {
-  return files_of(edit).empty() && std::ranges::all_of(edit, [](const PatchOperation& operation) {
-           const auto depth = static_cast<std::size_t>(std::ranges::count(operation.path, '/'));
-           return operation.op == PatchOp::test || (operation.op == PatchOp::replace && depth > kEntityDepth);
-         });
-}
-
-/// A number or a few instead of another: nothing else in the document follows from it.
-bool replaces_number(const PatchOperation& operation) {
-  const Json& value = operation.value;
-  return operation.op == PatchOp::replace &&
-         (value.is_number() || (value.is_array() && !value.empty() &&
-                                std::ranges::all_of(value, [](const Json& item) { return item.is_number(); })));
 }
 
 const char* name_of(StepForm form) {
@@ -88,6 +77,7 @@ EditHashes::EditHashes(const Journal& journal) : by_step_(journal.steps.size() +
   follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
     std::string& hashes = by_step_[event.place.step];
     if (event.is_first_frame()) hashes.reserve(event.step->frames() * kDigits);
+    if (event.back_to) last = after(*event.back_to);
     const Edit edit = event.edit();
     std::string text = last + name_of(event.step->form()) + std::to_string(event.frame);
     for (const PatchOperation& operation : edit)
@@ -126,25 +116,6 @@ std::vector<std::filesystem::path> files_of(const Journal& journal) {
   std::ranges::sort(paths);
   paths.erase(std::ranges::unique(paths).begin(), paths.end());
   return paths;
-}
-
-void MergedEdits::add(Edit edit) {
-  const bool is_plain = only_replaces_values(edit);
-  if (is_plain && may_append_) {
-    Edit& last = edits_.back();
-    if (edit.size() == 1 && !last.empty() && replaces_number(edit[0]) && replaces_number(last.back()) &&
-        edit[0].path == last.back().path)
-      last.pop_back();
-    std::ranges::move(edit, std::back_inserter(last));
-  } else {
-    edits_.push_back(std::move(edit));
-  }
-  may_append_ = is_plain;
-}
-
-std::vector<Edit> MergedEdits::take() {
-  may_append_ = false;
-  return std::exchange(edits_, {});
 }
 
 }  // namespace relook

@@ -32,18 +32,4 @@ class EditHashes {
 /// The files that a journal's edits bring in and those that these name; what cannot be found is left out.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const Journal& journal);
 
-/// Gathers edits that lead to the same state as those added one after the other: neighbours that only replace values
-/// inside of materials, nodes and so on are one, since no order of things depends on them; of numbers that replace one
-/// another the last is enough, so that a wedge is one operation.
-class MergedEdits {
- public:
-  void add(Edit edit);
-  [[nodiscard]] bool empty() const { return edits_.empty(); }
-  [[nodiscard]] std::vector<Edit> take();
-
- private:
-  std::vector<Edit> edits_;
-  bool may_append_ = false;
-};
-
 }  // namespace relook

@@ -11,6 +11,7 @@
 #include "frame/frame_file.h"
 #include "frame/preview.h"
 #include "report/line_reader.h"
+#include "scene/export/export_gltf.h"
 
 namespace relook {
 namespace {
@@ -73,6 +74,8 @@ bool is_of_kind(const std::filesystem::path& path, OwnKind kind) {
       return starts_with(path, "relook-access/");
     case OwnKind::journal:
       return is_generated_journal(text_of(read_file(path)));
+    case OwnKind::scene:
+      return is_exported_scene(read_file(path));
   }
   return false;
 }
@@ -80,17 +83,9 @@ bool is_of_kind(const std::filesystem::path& path, OwnKind kind) {
 }  // namespace
 
 std::string_view own_kind_name(OwnKind kind) {
-  constexpr std::array<std::string_view, 11> kNames{"a frame",
-                                                    "a preview",
-                                                    "a page",
-                                                    "a page's data",
-                                                    "the report of a run",
-                                                    "the notes of a run",
-                                                    "a comparison",
-                                                    "a plan",
-                                                    "a trace",
-                                                    "an access log",
-                                                    "a journal"};
+  constexpr std::array<std::string_view, 12> kNames{
+      "a frame",      "a preview", "a page",  "a page's data", "the report of a run", "the notes of a run",
+      "a comparison", "a plan",    "a trace", "an access log", "a journal",           "an export"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 

@@ -19,6 +19,7 @@ enum class OwnKind : std::uint8_t {
   trace,       // --trace
   access_log,  // --access-log
   journal,     // written by `relook journal` and not changed since
+  scene,       // written by `relook export` and not changed since
 };
 /// "a frame", for messages that go on with "of relook".
 [[nodiscard]] std::string_view own_kind_name(OwnKind kind);

@@ -152,11 +152,11 @@ struct PixelHistory::Impl {
     facts = pixel_facts(state.scene(), rays, block, roots);
   }
 
-  PixelStep step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+  PixelStep step(const SceneEdit& edit) {
     PixelStep result;
     const std::vector<LightId> old_lights = state.scene().light_order;
-    const SceneDelta delta = apply_edit(state, edit, file, folder);
-    result.classification = classify(state.scene(), delta);
+    auto [delta, classification] = edit(state);
+    result.classification = std::move(classification);
     StepChange change = find_change(rays, state.scene(), delta, old_lights);
     rays = ColorScene(rays.after(state.scene(), delta), state.scene());
     level.note_changed(selection_of(change));
@@ -178,8 +178,6 @@ PixelHistory::~PixelHistory() = default;
 
 Rgba PixelHistory::color() const { return impl_->color; }
 const std::vector<std::string>& PixelHistory::paths() const { return impl_->facts.lines; }
-PixelStep PixelHistory::step(const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
-  return impl_->step(edit, file, folder);
-}
+PixelStep PixelHistory::step(const SceneEdit& edit) { return impl_->step(edit); }
 
 }  // namespace relook

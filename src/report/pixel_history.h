@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "edit/apply.h"
+#include "edit/scene_history.h"
 #include "frame/image.h"
 #include "scene/compile/state.h"
 
@@ -35,8 +35,8 @@ class PixelHistory {
   /// The ray paths of the pixel's samples in names, a node a line.
   [[nodiscard]] const std::vector<std::string>& paths() const;
 
-  /// Applies one edit. Throws InputError with everything as before.
-  PixelStep step(const Edit& edit, std::string_view file, const std::filesystem::path& folder);
+  /// Applies an edit, such as those of an event of a journal. Throws what it throws, with everything as before.
+  PixelStep step(const SceneEdit& edit);
 
  private:
   struct Impl;

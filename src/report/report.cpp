@@ -27,9 +27,9 @@ std::string cpu_model() {
 }
 
 Json seconds_json(const Seconds& seconds) {
-  return {{"classify", seconds.classify}, {"select", seconds.select},     {"test", seconds.test},
-          {"update", seconds.update},     {"evaluate", seconds.evaluate}, {"write", seconds.write},
-          {"total", seconds.total}};
+  return {
+      {"classify", seconds.classify}, {"select", seconds.select}, {"test", seconds.test},   {"update", seconds.update},
+      {"evaluate", seconds.evaluate}, {"write", seconds.write},   {"total", seconds.total}, {"cpu", seconds.cpu}};
 }
 
 Json resident_json(const Resident& resident) {
@@ -56,6 +56,14 @@ Json moves_json(const Moves& moves) {
 Json verify_json(const std::optional<VerifyResult>& verify) {
   if (!verify) return nullptr;
   return {{"pixels_compared", verify->pixels_compared}, {"pixels_different", verify->pixels_different}};
+}
+
+Json full_render_json(const std::optional<FullRender>& full) {
+  if (!full) return nullptr;
+  return {{"seconds", full->seconds},
+          {"cpu_seconds", full->cpu_seconds},
+          {"rays", full->rays},
+          {"measured", full->is_measured}};
 }
 
 Json range_json(const std::optional<StepRange>& range) {
@@ -102,6 +110,7 @@ Json options_json(const RunReport& report) {
           {"shadow_bits", report.view.shadow_bits},
           {"float", report.float_frames},
           {"aovs", report.layers},
+          {"relight", report.relight},
           {"exposure", report.exposure},
           {"verify", or_null(report.verify_percent)},
           {"steps", range_json(report.step_range)}};
@@ -112,49 +121,52 @@ Json options_json(const RunReport& report) {
 Json step_json(const StepReport& step) {
   const Counters& counters = step.counters;
   const auto frame = step.files.find(step.frame);
-  return {{"step", step.place.step},
-          {"name", step.name},
-          {"class", change_class_name(step.change)},
-          {"reasons", step.reasons},
-          {"drag_frame", number_json(step, true)},
-          {"wedge_frame", number_json(step, false)},
-          {"frame", step.frame},
-          {"frame_hash", frame == step.files.end() ? "" : frame->second.hash},
-          {"preview", step.preview},
-          {"edits", step.edits_hash},
-          {"source", step.source_hash},
-          {"files", files_json(step.files)},
-          {"command", step.command},
-          {"samples_total", counters.samples_total},
-          {"samples_affected", counters.samples_affected},
-          {"pixels_changed", counters.pixels_changed},
-          {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
-          {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
-          {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
-          {"ray_tests", counters.ray_tests},
-          {"ray_tests_culled", counters.ray_tests_culled},
-          {"ray_tests_culled_by",
-           {{"tunnels", counters.culled.tunnels},
-            {"boxes", counters.culled.boxes},
-            {"dropped", counters.culled.dropped},
-            {"class", counters.culled.by_class}}},
-          {"ray_updates", counters.ray_updates},
-          {"shadow_updates", counters.shadow_updates},
-          {"object_rays", counters.object_rays},
-          {"color_trees_evaluated", counters.color_trees_evaluated},
-          {"color_trees_reused", counters.color_trees_reused},
-          {"tunnels_read", counters.tunnels_read},
-          {"seconds", seconds_json(step.seconds)},
-          {"resident", resident_json(step.resident)},
-          {"evicted", moves_json(counters.evicted)},
-          {"rebuilt", moves_json(counters.rebuilt)},
-          {"reloaded", moves_json(counters.reloaded)},
-          {"peak_rss", step.peak_rss_bytes},
-          {"resumed", false},
-          {"exposure", step.exposure},
-          {"overlays", step.has_overlays},
-          {"verify_percent", or_null(step.verify_percent)},
-          {"verify", verify_json(step.verify)}};
+  Json json{{"step", step.place.step},
+            {"class", change_class_name(step.change)},
+            {"reasons", step.reasons},
+            {"drag_frame", number_json(step, true)},
+            {"wedge_frame", number_json(step, false)},
+            {"frame", step.frame},
+            {"frame_hash", frame == step.files.end() ? "" : frame->second.hash},
+            {"preview", step.preview},
+            {"edits", step.edits_hash},
+            {"source", step.source_hash},
+            {"files", files_json(step.files)},
+            {"command", step.command},
+            {"samples_total", counters.samples_total},
+            {"samples_affected", counters.samples_affected},
+            {"pixels_changed", counters.pixels_changed},
+            {"regions_visited", counters.by_groups.visited + counters.by_tunnels.visited},
+            {"regions_culled", counters.by_groups.culled + counters.by_tunnels.culled},
+            {"regions", {{"groups", regions_json(counters.by_groups)}, {"tunnels", regions_json(counters.by_tunnels)}}},
+            {"ray_tests", counters.ray_tests},
+            {"ray_tests_culled", counters.ray_tests_culled},
+            {"ray_tests_culled_by",
+             {{"tunnels", counters.culled.tunnels},
+              {"boxes", counters.culled.boxes},
+              {"dropped", counters.culled.dropped},
+              {"class", counters.culled.by_class}}},
+            {"ray_updates", counters.ray_updates},
+            {"shadow_updates", counters.shadow_updates},
+            {"object_rays", counters.object_rays},
+            {"color_trees_evaluated", counters.color_trees_evaluated},
+            {"color_trees_reused", counters.color_trees_reused},
+            {"tunnels_read", counters.tunnels_read},
+            {"seconds", seconds_json(step.seconds)},
+            {"resident", resident_json(step.resident)},
+            {"evicted", moves_json(counters.evicted)},
+            {"rebuilt", moves_json(counters.rebuilt)},
+            {"reloaded", moves_json(counters.reloaded)},
+            {"peak_rss", step.peak_rss_bytes},
+            {"resumed", false},
+            {"exposure", step.exposure},
+            {"overlays", step.has_overlays},
+            {"relight", step.has_relight},
+            {"verify_percent", or_null(step.verify_percent)},
+            {"verify", verify_json(step.verify)},
+            {"full_render", full_render_json(step.full_render)}};
+  json.update(step.words);
+  return json;
 }
 
 std::string_view program_version() { return RELOOK_VERSION; }
@@ -186,7 +198,12 @@ Json report_head_json(const RunReport& report) {
           {"program", program_version()},
           {"scene", {{"file", printable(report.scene)}, {"hash", report.scene_hash}}},
           {"cache", printable(report.cache_folder)},
-          {"journal", {{"file", printable(report.journal)}, {"hash", report.journal_hash}}},
+          {"journal",
+           {{"file", printable(report.journal)},
+            {"hash", report.journal_hash},
+            {"note", text_or_null(report.said.note)},
+            {"author", text_or_null(report.said.author)},
+            {"extras", report.said.extras}}},
           {"source", report.source},
           {"places", report.places},
           {"camera", report.camera.name},

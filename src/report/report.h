@@ -26,6 +26,13 @@ struct VerifyResult {
   std::uint64_t pixels_compared = 0, pixels_different = 0;
 };
 
+/// A full render of the scene that a frame shows, without writing: what the frame would cost without a cache.
+struct FullRender {
+  double seconds = 0, cpu_seconds = 0;
+  std::uint64_t rays = 0;    // and shadow segments: those of the frame's ray trees
+  bool is_measured = false;  // otherwise the one of --baseline, scaled by its rays
+};
+
 /// A file of a run as it was written.
 struct FileStamp {
   std::string hash;  // XXH3-128
@@ -39,6 +46,7 @@ struct StepReport {
   FramePlace place;
   bool is_whole_step = false;  // of a drag or wedge
   std::string name;
+  Json words = Json::object();  // what the journal says of it, the name too: entry_words() (report/journal_words.h)
   ChangeClass change = ChangeClass::base;
   std::vector<std::string> reasons;
   bool is_drag = false;        // of numbered frames: they are a drag's, otherwise a wedge's
@@ -47,15 +55,17 @@ struct StepReport {
   std::string source_hash;     // of RunReport::source
   double exposure = 0;         // stops, of the preview and the overlays
   bool has_overlays = false;   // --overlays
+  bool has_relight = false;    // --relight
   std::optional<double> verify_percent;
   std::string command;  // which command has done it: 16 hexadecimal digits, of its own
   std::map<std::string, FileStamp>
-      files;  // of the frame, its preview and its overlays, by name; known once they are written
+      files;  // of the frame, its preview, overlays and layers of light, by name; known once they are written
   Counters counters;
   Seconds seconds;
   Resident resident;
   std::uint64_t peak_rss_bytes = 0;
   std::optional<VerifyResult> verify;
+  std::optional<FullRender> full_render;  // none: neither --verify nor --baseline
 };
 
 /// Steps of a journal, from 1; 0 is the frame before any of them.
@@ -89,6 +99,7 @@ struct RunReport {
   std::string scene, scene_hash;      // file as named when the cache was made
   std::string cache_folder;           // as named by the user
   std::string journal, journal_hash;  // file as named by the user
+  Annotations said;                   // of the journal as a whole
   Json source;                        // what all frames of the run have in common (report/run_source.h)
   Json places;                        // where cache and journal are (report/places.h)
   Camera camera;
@@ -96,6 +107,7 @@ struct RunReport {
   StructureOptions structures;
   bool float_frames = false;
   bool layers = false;  // --aovs
+  bool relight = false;  // --relight
   double exposure = 0;  // stops, of previews
   std::optional<double> verify_percent;
   std::optional<StepRange> step_range;  // none: all

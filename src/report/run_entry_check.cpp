@@ -13,21 +13,31 @@ namespace relook {
 namespace {
 
 constexpr std::string_view kFile = "report.json";
-constexpr std::size_t kHashDigits = 32, kCommandDigits = 16;
+constexpr std::size_t kEntryHashDigits = 32, kCommandDigits = 16;
 constexpr std::string_view kSealStart = ",\"seal\":\"", kSealEnd = "\"}";
 constexpr double kMostSeconds = 1e9;
 constexpr std::int64_t kMostFrameNumber = 1'000'000;
 
-constexpr std::array<std::string_view, 37> kMembers{
+constexpr std::array<std::string_view, 38> kMembers{
     "step",           "name",       "class",         "reasons",        "drag_frame",       "wedge_frame",
     "frame",          "frame_hash", "preview",       "edits",          "source",           "files",
     "command",        "seal",       "samples_total", "pixels_changed", "samples_affected", "regions_visited",
     "regions_culled", "regions",    "ray_tests",     "object_rays",    "ray_tests_culled", "ray_tests_culled_by",
     "ray_updates",    "seconds",    "resident",      "shadow_updates", "evicted",          "rebuilt",
     "reloaded",       "peak_rss",   "resumed",       "exposure",       "overlays",         "verify_percent",
-    "verify"};
-constexpr std::array<std::string_view, 3> kFurtherMembers{"color_trees_evaluated", "color_trees_reused",
-                                                          "tunnels_read"};
+    "verify",         "relight"};
+constexpr std::array<std::string_view, 11> kFurtherMembers{"color_trees_evaluated",
+                                                           "color_trees_reused",
+                                                           "tunnels_read",
+                                                           "from",
+                                                           "keep",
+                                                           "values",
+                                                           "axes",
+                                                           "note",
+                                                           "author",
+                                                           "extras",
+                                                           "full_render"};
+constexpr std::array<std::string_view, 4> kFullRender{"seconds", "cpu_seconds", "rays", "measured"};
 constexpr std::array<std::string_view, 15> kCounts{"samples_total",
                                                    "samples_affected",
                                                    "pixels_changed",
@@ -44,7 +54,8 @@ constexpr std::array<std::string_view, 15> kCounts{"samples_total",
                                                    "peak_rss",
                                                    "step"};
 constexpr std::array<std::string_view, 5> kClasses{"base", "color", "optical", "geometric", "mixed"};
-constexpr std::array<std::string_view, 7> kPhases{"classify", "select", "test", "update", "evaluate", "write", "total"};
+constexpr std::array<std::string_view, 8> kPhases{"classify", "select", "test",  "update",
+                                                  "evaluate", "write",  "total", "cpu"};
 constexpr std::array<std::string_view, 12> kParts{"ray_paths",   "ray_trees",     "sample_colors", "light_sums",
                                                   "kept_rays",   "kept_segments", "kept_terms",    "kept_vertices",
                                                   "color_trees", "groups",        "tunnels",       "total"};
@@ -103,7 +114,26 @@ void check_verify(const JsonView& view) {
     verify.fail("more pixels differ than were compared");
 }
 
-/// Only the frame, its preview and, if it has some, its overlays.
+/// What the journal says is taken from it; here only what has a form of its own.
+void check_words(const JsonView& view) {
+  if (const JsonView from = view.at("from"); !from.value().is_null()) (void)from.integer(0, kMostFrameNumber);
+  (void)view.at("keep").boolean();
+  for (const char* list : {"values", "axes"})
+    if (!view.at(list).value().is_null()) view.at(list).require_array();
+  for (const char* text : {"note", "author"})
+    if (!view.at(text).value().is_null()) (void)view.at(text).text();
+}
+
+void check_full_render(const JsonView& full) {
+  if (full.value().is_null()) return;
+  full.only_keys(kFullRender);
+  (void)full.at("seconds").number(0, kMostSeconds);
+  (void)full.at("cpu_seconds").number(0, kMostSeconds);
+  check_count(full.at("rays"));
+  (void)full.at("measured").boolean();
+}
+
+/// Only the frame, its preview and, if it has some, its overlays and its layers of light, which are there then.
 void check_files(const JsonView& view) {
   const std::string frame = view.at("frame").text(), stem = std::filesystem::path(frame).stem().string();
   if (stem.find_first_not_of("0123456789_") != stem.npos || frame != "frames/" + stem + ".exr" ||
@@ -113,18 +143,22 @@ void check_files(const JsonView& view) {
   if (view.at("overlays").boolean())
     for (const std::string_view kind : kOverlays)
       names.push_back("overlays/" + stem + "_" + std::string(kind) + ".png");
+  std::size_t always = 2;  // frame and preview
+  if (view.at("relight").boolean()) {
+    names.insert(names.begin(), "relight/" + stem + ".exr");
+    ++always;
+  }
   const JsonView files = view.at("files");
   files.require_object();
   for (const auto& file : files.value().items()) {
     if (std::ranges::find(names, file.key()) == names.end()) files.fail("has a file that is not the frame's");
     const JsonView stamp = files.at(file.key());
     stamp.only_keys(kStamp);
-    check_digits(stamp.at("hash"), kHashDigits);
+    check_digits(stamp.at("hash"), kEntryHashDigits);
     check_count(stamp.at("bytes"));
     (void)stamp.at("modified").integer(INT64_MIN, INT64_MAX);
   }
-  constexpr std::size_t kAlways = 2;  // frame and preview
-  for (std::size_t i = 0; i < kAlways; ++i) (void)files.at(names[i]);
+  for (std::size_t i = 0; i < always; ++i) (void)files.at(names[i]);
   if (view.at("frame_hash").text() != files.at(frame).at("hash").text()) view.at("frame_hash").fail("not the file's");
 }
 
@@ -139,10 +173,12 @@ void check_entry(const Json& entry) {
   const JsonView reasons = view.at("reasons");
   reasons.require_array();
   for (std::size_t i = 0; i < reasons.size(); ++i) (void)reasons.at(i).text();
-  if (!view.at("edits").text().empty()) check_digits(view.at("edits"), kHashDigits);
-  check_digits(view.at("source"), kHashDigits);
+  if (!view.at("edits").text().empty()) check_digits(view.at("edits"), kEntryHashDigits);
+  check_digits(view.at("source"), kEntryHashDigits);
   check_digits(view.at("command"), kCommandDigits);
   (void)view.at("resumed").boolean();
+  check_words(view);
+  check_full_render(view.at("full_render"));
   check_numbers(view);
   check_verify(view);
   check_files(view);
@@ -171,12 +207,12 @@ std::string sealed(std::string text) {
 }
 
 bool has_sound_seal(std::string_view text) {
-  constexpr std::size_t kSealBytes = kSealStart.size() + kHashDigits + kSealEnd.size();
+  constexpr std::size_t kSealBytes = kSealStart.size() + kEntryHashDigits + kSealEnd.size();
   if (text.size() < kSealBytes) return false;
   const std::string_view seal = text.substr(text.size() - kSealBytes);
   const std::string plain = std::string(text.substr(0, text.size() - kSealBytes)) + "}";
   return seal.starts_with(kSealStart) && seal.ends_with(kSealEnd) &&
-         seal.substr(kSealStart.size(), kHashDigits) == hash128(bytes_of(plain));
+         seal.substr(kSealStart.size(), kEntryHashDigits) == hash128(bytes_of(plain));
 }
 
 }  // namespace relook

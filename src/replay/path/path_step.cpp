@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "edit/apply.h"
 #include "image/image_pieces.h"
 #include "replay/path/path_tile.h"
 #include "replay/path/relight_tile.h"
@@ -302,15 +301,15 @@ void refresh_pixels(StoredImage& stored, std::span<const std::uint8_t> tiles, st
 
 }  // namespace
 
-StepResult path_step(ReplayParts& parts, const Edit& edit, std::string_view file, const std::filesystem::path& folder) {
+StepResult path_step(ReplayParts& parts, const SceneEdit& edit) {
   StepResult result;
   StopWatch watch;
   parts.residency.begin_change();
   const RayScene rays_before = parts.rays;
   const std::vector<LightSum> sums_before = light_sums(parts.state.scene());
-  const SceneDelta delta = apply_edit(parts.state, edit, file, folder);
+  auto [delta, classification] = edit(parts.state);
   const Scene& scene = parts.state.scene();
-  result.classification = classify(scene, delta);
+  result.classification = std::move(classification);
   if (parts.stored.regions().options().atoms > 0) parts.stored.extend_atoms(parts.atoms());
   result.counters.samples_total = parts.stored.samples();
   parts.rays = ColorScene(rays_before.after(scene, delta), scene);
