@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/tiles.h"
 #include "compare_text.h"
+#include "frame/frame_tiles.h"
 #include "page/page.h"
 #include "report/report.h"
 
@@ -75,9 +77,56 @@ std::string layer_table(const PairComparison& pair) {
   return "<h3>Layers that differ</h3>\n<table>\n<tr>" + heads + "</tr>\n" + rows + "</table>\n" + count;
 }
 
-std::string figure(const Bytes& png, std::string_view caption) {
-  return "<figure><img alt=\"" + html(caption) + "\" src=\"" + png_url(png) + "\"><figcaption>" + html(caption) +
-         "</figcaption></figure>";
+/// The tiles of a frame as RunFrames in pixels.js has them, in one record: [tiles, sizes, base64].
+Json record_of(const FrameTiles& tiles) {
+  Json sizes = Json::array();
+  Bytes all;
+  for (std::size_t tile = 0; tile < tiles.count(); ++tile) {
+    const BytesView packed = tiles.packed(tile);
+    sizes.push_back(packed.size());
+    all.insert(all.end(), packed.begin(), packed.end());
+  }
+  return {tiles.count(), std::move(sizes), base64(all)};
+}
+
+Json layout_of(const FrameTiles& tiles) {
+  Json channels = Json::array();
+  for (const FrameTiles::Channel& channel : tiles.channels())
+    channels.push_back({{"name", channel.name}, {"bytes", channel.bytes}});
+  return {{"width", tiles.width()},
+          {"height", tiles.height()},
+          {"tile", kTileSize},
+          {"channels", std::move(channels)},
+          {"bundles", nullptr}};
+}
+
+/// Of a frame without pixels in the page.
+Json layout_of(const Pictures& pictures) {
+  Json channels = Json::array();
+  for (const char* name : {"A", "B", "G", "R"}) channels.push_back({{"name", name}, {"bytes", 2}});
+  return {{"width", pictures.width},
+          {"height", pictures.height},
+          {"tile", kTileSize},
+          {"channels", std::move(channels)},
+          {"bundles", nullptr}};
+}
+
+Json facts_of(const FrameComparison& comparison, DisplayWhite white) {
+  Json facts = Json::array();
+  const auto add = [&](const std::string& name, const std::string& value) { facts.push_back({name, value}); };
+  add("verdict", std::string(verdict_name(comparison.verdict)));
+  add("pixels different", std::to_string(comparison.difference.pixels_different));
+  add("max error", number(comparison.difference.max_error));
+  add("RMS error", number(comparison.difference.rms_error));
+  add("PSNR (dB, peak " + number(white.value) + ")", number(comparison.psnr));
+  add("SSIM", number(comparison.ssim));
+  if (comparison.flip) {
+    add("FLIP, mean", number(comparison.flip->mean));
+    add("FLIP, largest", number(comparison.flip->largest));
+  }
+  if (const auto& worst = comparison.worst)
+    add("worst pixel", std::to_string(worst->x) + ", " + std::to_string(worst->y));
+  return facts;
 }
 
 std::string column_head(const RunTable::Column& column) {
@@ -118,9 +167,29 @@ void ComparePage::add_pair(const std::string& b, const PairComparison& pair) {
   for (const std::string& name : pair.missing)
     pairs_ += "<tr>" + head(name) + cell("in one only", "failure") + "</tr>\n";
   pairs_ += "</table>\n" + layer_table(pair);
-  for (const auto& [name, pictures] : pair.pictures)
-    pairs_ += "<h3>" + html(name) + "</h3>\n" + figure(pictures.a, a_) + figure(pictures.b, b) +
-              figure(pictures.errors, "errors, black: none, white: largest") + "\n";
+  for (const auto& [name, comparison] : pair.frames)
+    if (const auto found = pair.pictures.find(name); found != pair.pictures.end())
+      add_frame(b, name, comparison, found->second);
+}
+
+void ComparePage::add_frame(const std::string& b, const std::string& name, const FrameComparison& comparison,
+                            const Pictures& pictures) {
+  const std::string file = std::filesystem::path(b).filename().string();
+  Json frame{{"title", printable(name == file ? name : name + ", " + file)},
+             {"names", {printable(a_), printable(b)}},
+             {"verdict", verdict_name(comparison.verdict)},
+             {"facts", facts_of(comparison, white_)},
+             {"previews", {png_url(pictures.a), png_url(pictures.b)}},
+             {"errors", png_url(pictures.errors)},
+             {"pixels", nullptr}};
+  if (pictures.pixels_a.empty()) {
+    frame["layout"] = layout_of(pictures);
+  } else {
+    const FrameTiles first(Bytes(pictures.pixels_a), name), second(Bytes(pictures.pixels_b), name);
+    frame["layout"] = layout_of(first);
+    frame["pixels"] = {record_of(first), record_of(second)};
+  }
+  frames_.emplace_back(pictures.badness, script_json(frame));
 }
 
 void ComparePage::set_runs(const RunTable& table) {
@@ -140,8 +209,17 @@ void ComparePage::set_runs(const RunTable& table) {
 std::string ComparePage::text() const {
   Page page;
   page.title = "relook compare";
-  page.styles = {"compare.css"};
-  page.body = "<h1>relook compare</h1>\n" + pairs_ + runs_ + "<p>relook " + html(program_version()) + "</p>\n";
+  page.styles = {"page.css", "viewer.css", "scopes.css", "compare.css"};
+  page.scripts = {"page.js",    "beside.js",    "pixels.js", "curves.js", "display_gl.js",
+                  "display.js", "region.js",    "scopes.js", "words.js",  "viewer_input.js",
+                  "viewer.js",  "pair_view.js", "link.js",   "compare.js"};
+  page.body = "<h1>relook compare</h1>\n" + with_viewer(asset_text("compare.html")) + "<main>\n" + pairs_ + runs_ +
+              "<p>relook " + html(program_version()) + "</p>\n</main>\n";
+  std::vector<std::pair<double, std::string>> frames = frames_;
+  std::ranges::stable_sort(frames, std::ranges::greater(), [](const auto& frame) { return frame.first; });
+  std::string list;
+  for (const auto& [badness, frame] : frames) list += (list.empty() ? "" : ",\n") + frame;
+  page.data = {{"compared", "{\"exposure\":" + Json(exposure_).dump() + ",\"frames\":[" + list + "]}"}};
   return page_text(page);
 }
 

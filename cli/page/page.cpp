@@ -37,7 +37,11 @@ std::string policy(const Page& page) {
 
 }  // namespace
 
-std::string page_text(const Page& page) {
+namespace {
+
+/// Hands the text of the page over in pieces.
+template <class Take>
+void give_text(const Page& page, const Take& take) {
   std::string text = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   text += "<meta name=\"generator\" content=\"relook\">\n";
   text += "<meta http-equiv=\"Content-Security-Policy\" content=\"" + policy(page) + "\">\n";
@@ -47,14 +51,50 @@ std::string page_text(const Page& page) {
   for (const std::string_view name : page.styles)
     text.append("<style>").append(asset(name).text()).append("</style>\n");
   text.append("</head>\n<body>\n").append(page.body);
-  for (const auto& [id, value] : page.data)
-    text += "<script type=\"application/json\" id=\"" + escaped_html(id) + "\">" + value + "</script>\n";
-  for (const std::string_view name : page.scripts)
-    text.append("<script>").append(asset(name).text()).append("</script>\n");
-  return text + "</body>\n</html>\n";
+  take(text);
+  for (const auto& [id, value] : page.data) {
+    take("<script type=\"application/json\" id=\"" + escaped_html(id) + "\">");
+    take(value);
+    take("</script>\n");
+  }
+  for (const std::string_view name : page.scripts) {
+    take("<script>");
+    take(asset(name).text());
+    take("</script>\n");
+  }
+  take("</body>\n</html>\n");
+}
+
+}  // namespace
+
+std::string page_text(const Page& page) {
+  std::string text;
+  give_text(page, [&](std::string_view piece) { text += piece; });
+  return text;
+}
+
+void write_page(const std::filesystem::path& path, const Page& page) {
+  FileWriter file(path);
+  give_text(page, [&](std::string_view piece) { file.append(piece); });
+  file.publish();
+}
+
+std::size_t frame_bytes(const Page& page) {
+  std::size_t bytes = 0, data = 0;
+  give_text(page, [&](std::string_view piece) { bytes += piece.size(); });
+  for (const auto& [id, value] : page.data) data += value.size();
+  return bytes - data;
 }
 
 std::string_view asset_text(std::string_view name) { return asset(name).text(); }
+
+std::string with_viewer(std::string_view body) {
+  constexpr std::string_view kPlace = "{{viewer}}";
+  const std::size_t place = body.find(kPlace);
+  require(place != body.npos, "a body with a viewer has a place for it");
+  std::string text(body);
+  return text.replace(place, kPlace.size(), asset_text("viewer.html"));
+}
 
 std::string escaped_html(std::string_view text) {
   std::string escaped;

@@ -21,9 +21,17 @@ struct Page {
 };
 
 [[nodiscard]] std::string page_text(const Page& page);
+/// Writes the text to a file, piece by piece: a page may be larger than what one would want twice in memory. Throws
+/// IoError, ResourceError.
+void write_page(const std::filesystem::path& path, const Page& page);
+/// Bytes of the page without its data.
+[[nodiscard]] std::size_t frame_bytes(const Page& page);
 
 /// The text of a file in assets/, such as the body of a page. Requires: it is built in.
 [[nodiscard]] std::string_view asset_text(std::string_view name);
+
+/// A body with the viewer of two frames, viewer.html, where it says {{viewer}}. Requires: it does.
+[[nodiscard]] std::string with_viewer(std::string_view body);
 
 /// Text as HTML shows it, in elements and in quoted attributes.
 [[nodiscard]] std::string escaped_html(std::string_view text);

@@ -1,6 +1,7 @@
 #include "page/page_files.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <fstream>
 #include <optional>
@@ -28,12 +29,16 @@ std::optional<std::size_t> take_number(std::string_view& text) {
 std::optional<std::size_t> page_number_in(std::string_view name) {
   if (!name.ends_with(".js")) return std::nullopt;
   name.remove_suffix(3);
-  const bool is_steps = name.starts_with("steps_");
-  if (is_steps) name.remove_prefix(6);
+  bool has_kind = false;
+  for (const std::string_view kind : {std::string_view("steps_"), std::string_view("relight_")}) {
+    if (has_kind || !name.starts_with(kind)) continue;
+    has_kind = true;
+    name.remove_prefix(kind.size());
+  }
   const std::size_t digits = name.size();
   const std::optional<std::size_t> number = take_number(name);
   if (!number) return std::nullopt;
-  if (name.empty()) return !is_steps && digits >= kFewestDigits ? std::optional<std::size_t>(0) : std::nullopt;
+  if (name.empty()) return !has_kind && digits >= kFewestDigits ? std::optional<std::size_t>(0) : std::nullopt;
   if (name.back() != '_') return std::nullopt;
   name.remove_suffix(1);
   const std::size_t first_digits = name.size();
@@ -42,9 +47,10 @@ std::optional<std::size_t> page_number_in(std::string_view name) {
 
 bool begins_with_a_call(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string start(std::max(kPixelsCall.size(), kStepsCall.size()), '\0');
+  constexpr std::array kCalls{kPixelsCall, kStepsCall, kRelightCall};
+  std::string start(std::ranges::max(kCalls, {}, &std::string_view::size).size(), '\0');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return start.starts_with(kPixelsCall) || start.starts_with(kStepsCall);
+  return std::ranges::any_of(kCalls, [&](std::string_view call) { return start.starts_with(call); });
 }
 
 /// The file under the temporary name that write_file() gives it, left by a run that was killed: its name, or "".

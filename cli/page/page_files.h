@@ -13,9 +13,10 @@ namespace relook {
 /// What a data script calls, and so begins with.
 inline constexpr std::string_view kPixelsCall = "relook_pixels(";
 inline constexpr std::string_view kStepsCall = "relook_steps(";
+inline constexpr std::string_view kRelightCall = "relook_relight(";
 
-/// Whether a file of a run's pixels/ may be one of a page, going by its name: "00012_3.js", "steps_00001_3.js", with
-/// the number of the page last; "00012.js" of older ones.
+/// Whether a file of a run's pixels/ may be one of a page, going by its name: "00012_3.js", "steps_00001_3.js",
+/// "relight_00012_3.js", with the number of the page last; "00012.js" of older ones.
 [[nodiscard]] bool is_page_file_name(std::string_view name);
 
 class PageFiles {
@@ -28,9 +29,11 @@ class PageFiles {
   PageFiles& operator=(const PageFiles&) = delete;
 
   [[nodiscard]] std::size_t page_number() const { return page_number_; }
-  /// The path for a new file of pixels or of details; makes its folder. `number`: of the entry or of the chunk.
+  /// The path for a new file of pixels, of details or of layers of light; makes its folder. `number`: of the entry or
+  /// of the chunk.
   [[nodiscard]] std::filesystem::path new_pixels(std::size_t number) { return new_file("", number); }
   [[nodiscard]] std::filesystem::path new_steps(std::size_t number) { return new_file("steps_", number); }
+  [[nodiscard]] std::filesystem::path new_relight(std::size_t number) { return new_file("relight_", number); }
   /// The page that uses the new files is there: removes those of earlier pages. Throws IoError.
   void keep_new();
 

@@ -1,7 +1,6 @@
 #include "page/page_pixels.h"
 
 #include <algorithm>
-#include <functional>
 #include <utility>
 
 #include "page/page.h"
@@ -23,6 +22,8 @@ std::uint64_t bytes_of_frames(const std::filesystem::path& folder) {
   return bytes;
 }
 
+}  // namespace
+
 std::vector<std::size_t> runs_of(const std::vector<std::size_t>& tiles) {
   std::vector<std::size_t> runs;
   for (const std::size_t tile : tiles) {
@@ -34,12 +35,23 @@ std::vector<std::size_t> runs_of(const std::vector<std::size_t>& tiles) {
   return runs;
 }
 
-/// The base64 of the changed tiles, one after the other, in pieces.
-void append_base64(const RunPixels& run, const PixelBundles::Append& append) {
+std::vector<std::size_t> counted(const std::vector<std::size_t>& entries) {
+  std::vector<std::size_t> runs;
+  for (const std::size_t entry : entries) {
+    if (runs.empty() || runs.back() != entry)
+      runs.insert(runs.end(), {1, entry});
+    else
+      ++runs[runs.size() - 2];
+  }
+  return runs;
+}
+
+void append_base64(const std::vector<std::size_t>& tiles, const std::function<BytesView(std::size_t)>& packed_tile,
+                   const PixelBundles::Append& append) {
   constexpr std::size_t kPiece = 3 << 16;
   Bytes waiting;
-  for (const std::size_t tile : run.changed()) {
-    const BytesView packed = run.packed(tile);
+  for (const std::size_t tile : tiles) {
+    const BytesView packed = packed_tile(tile);
     waiting.insert(waiting.end(), packed.begin(), packed.end());
     if (waiting.size() < kPiece) continue;
     const std::size_t whole = waiting.size() / 3 * 3;
@@ -49,13 +61,12 @@ void append_base64(const RunPixels& run, const PixelBundles::Append& append) {
   append(base64(waiting));
 }
 
-}  // namespace
-
 void PixelBundles::add(std::size_t entry, const std::function<void(const Append&)>& write) {
   const bool is_first = !file_;
   if (is_first) {
-    file_ = std::make_unique<FileWriter>(files_->new_pixels(entry));
-    file_->append(std::string(kPixelsCall) + std::to_string(entry) + ",[");
+    file_ =
+        std::make_unique<FileWriter>(call_ == kRelightCall ? files_->new_relight(entry) : files_->new_pixels(entry));
+    file_->append(std::string(call_) + std::to_string(entry) + ",[");
     first_entries_.push_back(entry);
   }
   file_->append(is_first ? "" : ",\n");
@@ -70,15 +81,16 @@ void PixelBundles::end_file() {
   file_.reset();
 }
 
-PagePixels::PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files)
-    : folder_(run), run_(exposure), frames_bytes_(bytes_of_frames(run / "frames")), bundles_(files) {}
+PagePixels::PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files, std::uint32_t scale)
+    : folder_(run), run_(exposure), scale_(scale), frames_bytes_(bytes_of_frames(run / "frames")), bundles_(files) {}
 
 void PagePixels::take(std::size_t entry, const std::string& stem, bool is_last, std::size_t room_bytes) {
-  if (stem != std::exchange(stem_, stem)) {
+  if (stem != stem_) {
     const std::filesystem::path file = folder_ / "frames" / (stem + ".exr");
     Bytes bytes = read_file(file);
     read_bytes_ += bytes.size();
-    run_.load(std::move(bytes), file.string());
+    run_.load(scale_ > 1 ? scaled_frame(std::move(bytes), file.string(), scale_) : std::move(bytes), file.string());
+    stem_ = stem;
   }
   keep(entry, is_last, room_bytes);
 }
@@ -113,7 +125,8 @@ void PagePixels::keep(std::size_t entry, bool is_last, std::size_t room_bytes) {
   bytes_ += bytes;
   const auto write = [&](const PixelBundles::Append& append) {
     append(start);
-    append_base64(run_, append);
+    append_base64(
+        run_.changed(), [this](std::size_t tile) { return run_.packed(tile); }, append);
     append("\"]");
   };
   if (is_beside_) {
@@ -124,17 +137,6 @@ void PagePixels::keep(std::size_t entry, bool is_last, std::size_t room_bytes) {
   sources_.resize(run_.current().count());
   for (const std::size_t tile : run_.changed()) sources_[tile] = entry;
   run_.keep();
-}
-
-std::vector<std::size_t> PagePixels::sources() const {
-  std::vector<std::size_t> runs;
-  for (const std::size_t entry : sources_) {
-    if (runs.empty() || runs.back() != entry)
-      runs.insert(runs.end(), {1, entry});
-    else
-      ++runs[runs.size() - 2];
-  }
-  return runs;
 }
 
 void PagePixels::move_out() {

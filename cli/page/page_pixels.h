@@ -24,7 +24,8 @@ inline constexpr std::uint64_t kFreeBesideBytes = 6'000'000;
 /// Files beside the page, each with the records of several entries.
 class PixelBundles {
  public:
-  explicit PixelBundles(PageFiles& files) : files_(&files) {}
+  /// `call`: kPixelsCall or kRelightCall.
+  explicit PixelBundles(PageFiles& files, std::string_view call = kPixelsCall) : files_(&files), call_(call) {}
   using Append = std::function<void(std::string_view)>;
   /// Adds the record of an entry, which `write` appends piece by piece.
   void add(std::size_t entry, const std::function<void(const Append&)>& write);
@@ -33,14 +34,23 @@ class PixelBundles {
 
  private:
   PageFiles* files_;
+  std::string_view call_;
   std::unique_ptr<FileWriter> file_;  // not ended yet
   std::vector<std::size_t> first_entries_;
 };
 
+/// Tiles, increasing, as runs: [first, count, ...].
+[[nodiscard]] std::vector<std::size_t> runs_of(const std::vector<std::size_t>& tiles);
+/// A list of entries, one a tile, as runs: [count, entry, ...].
+[[nodiscard]] std::vector<std::size_t> counted(const std::vector<std::size_t>& entries);
+/// The base64 of packed tiles, one after the other, in pieces.
+void append_base64(const std::vector<std::size_t>& tiles, const std::function<BytesView(std::size_t)>& packed_tile,
+                   const PixelBundles::Append& append);
+
 class PagePixels {
  public:
-  /// `files` outlives this. `exposure`: stops, of thumbnails.
-  PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files);
+  /// `files` outlives this. `exposure`: stops, of thumbnails. Pixels are at 1/scale of the frames' size.
+  PagePixels(const std::filesystem::path& run, double exposure, PageFiles& files, std::uint32_t scale = 1);
 
   /// Takes the frame of the next entry. `room_bytes`: what all pixels may take in the page.
   void take(std::size_t entry, const std::string& stem, bool is_last, std::size_t room_bytes);
@@ -50,7 +60,7 @@ class PagePixels {
   /// ...].
   [[nodiscard]] const std::vector<std::size_t>& last_tiles() const { return last_tiles_; }
   /// The entries that the tiles of the last frame in the page are from, as runs: [count, entry, ...].
-  [[nodiscard]] std::vector<std::size_t> sources() const;
+  [[nodiscard]] std::vector<std::size_t> sources() const { return counted(sources_); }
   /// A small PNG file of the last entry taken.
   [[nodiscard]] Bytes thumbnail() { return run_.thumbnail(); }
 
@@ -73,6 +83,7 @@ class PagePixels {
 
   std::filesystem::path folder_;
   RunPixels run_;
+  std::uint32_t scale_;
   std::string stem_;                                          // of the frame that run_ has
   std::uint64_t frames_bytes_ = 0;                            // of the whole run
   std::uint64_t read_bytes_ = 0;                              // of the frames read so far

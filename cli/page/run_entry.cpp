@@ -6,16 +6,16 @@
 #include <utility>
 
 #include "base/error.h"
+#include "page/cut.h"
+#include "page/run_marks.h"
 
 namespace relook {
 namespace {
 
-constexpr std::size_t kLongestName = 160, kLongestText = 400, kLongestClass = 20;  // bytes
-constexpr std::size_t kMostParts = 64;                                             // of an array or object
-constexpr int kDeepest = 8;
-constexpr std::size_t kMostDetailBytes = 8192;  // of one entry
+constexpr std::size_t kLongestName = 160, kLongestText = 400, kLongestClass = 20, kLongestNote = 2000;  // bytes
+constexpr std::size_t kMostDetailBytes = 8192;                                                          // of one entry
 
-constexpr std::array<std::string_view, 34> kColumns{"/step",
+constexpr std::array<std::string_view, 38> kColumns{"/step",
                                                     "/pixels_changed",
                                                     "/samples_affected",
                                                     "/regions_visited",
@@ -32,6 +32,10 @@ constexpr std::array<std::string_view, 34> kColumns{"/step",
                                                     "/seconds/evaluate",
                                                     "/seconds/write",
                                                     "/seconds/total",
+                                                    "/seconds/cpu",
+                                                    "/full_render/seconds",
+                                                    "/full_render/cpu_seconds",
+                                                    "/full_render/measured",
                                                     "/resident/ray_paths",
                                                     "/resident/ray_trees",
                                                     "/resident/sample_colors",
@@ -50,11 +54,12 @@ constexpr std::array<std::string_view, 34> kColumns{"/step",
                                                     "/verify/pixels_compared",
                                                     "/verify/pixels_different"};
 
-/// The number at a pointer, seconds to four digits; null: there is none.
+/// The number at a pointer, seconds to four digits, or 1 and 0 for true and false; null: there is none.
 Json number_at(const Json& entry, std::string_view pointer) {
   const Json::json_pointer place{std::string(pointer)};
   if (!entry.contains(place)) return nullptr;
   const Json& value = entry.at(place);
+  if (value.is_boolean()) return value.get<bool>() ? 1 : 0;
   if (!value.is_number()) return nullptr;
   if (!value.is_number_float()) return value;
   char text[32];
@@ -63,57 +68,11 @@ Json number_at(const Json& entry, std::string_view pointer) {
   return rounded == 0 ? Json(0) : Json(rounded);
 }
 
-std::string text_at(const Json& entry, const char* key) {
-  const auto found = entry.find(key);
-  return found != entry.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-
-/// The place of an entry among the frames of a drag or wedge, from 1; 0: it is the step's own.
-std::size_t frame_in_step(const Json& entry) {
-  for (const char* kind : {"drag_frame", "wedge_frame"})
-    if (const auto found = entry.find(kind); found != entry.end() && found->is_number_integer())
-      return found->get<std::size_t>();
-  return 0;
-}
-
-/// At most `most` bytes of a text, whole characters, with "…" where it was cut.
-std::string cut_text(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string(text);
-  std::size_t end = most;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  return std::string(text.substr(0, end)) + "…";
-}
-
-/// A value with its long texts and lists cut.
-Json cut(const Json& value, std::size_t longest, int depth = 0) {
-  if (value.is_string()) return cut_text(value.get_ref<const std::string&>(), longest);
-  if (!value.is_structured()) return value;
-  if (depth == kDeepest) return "…";
-  Json shorter = value.is_array() ? Json::array() : Json::object();
-  std::size_t count = 0;
-  for (const auto& [key, part] : value.items()) {
-    if (++count > kMostParts) break;
-    if (value.is_array())
-      shorter.push_back(cut(part, longest, depth + 1));
-    else
-      shorter[cut_text(key, longest)] = cut(part, longest, depth + 1);
-  }
-  if (count > kMostParts) {
-    const std::string more = "… " + std::to_string(value.size() - kMostParts) + " more";
-    if (value.is_array())
-      shorter.push_back(more);
-    else
-      shorter["…"] = more;
-  }
-  return shorter;
-}
-
 Json operation_json(const PatchOperation& operation) {
-  constexpr const char* kNames[] = {"add", "remove", "replace", "move", "copy", "test"};
-  Json json{{"op", kNames[static_cast<std::size_t>(operation.op)]}, {"path", cut_text(operation.path, kLongestText)}};
-  if (!operation.from.empty()) json["from"] = cut_text(operation.from, kLongestText);
-  if (operation.op == PatchOp::add || operation.op == PatchOp::replace || operation.op == PatchOp::test)
-    json["value"] = cut(operation.value, kLongestText);
+  Json json = whole_operation_json(operation);
+  for (const char* place : {"path", "from"})
+    if (json.contains(place)) json[place] = cut_json(json[place], kLongestText);
+  if (json.contains("value")) json["value"] = cut_json(json["value"], kLongestText);
   return json;
 }
 
@@ -150,6 +109,15 @@ class Details {
 
 std::span<const std::string_view> row_columns() { return kColumns; }
 
+Json whole_operation_json(const PatchOperation& operation) {
+  constexpr const char* kNames[] = {"add", "remove", "replace", "move", "copy", "test"};
+  Json json{{"op", kNames[static_cast<std::size_t>(operation.op)]}, {"path", operation.path}};
+  if (!operation.from.empty()) json["from"] = operation.from;
+  if (operation.op == PatchOp::add || operation.op == PatchOp::replace || operation.op == PatchOp::test)
+    json["value"] = operation.value;
+  return json;
+}
+
 std::string stem_of(const Json& entry, std::size_t i) {
   const std::string frame = text_at(entry, "frame"), preview = text_at(entry, "preview");
   const std::string stem = std::filesystem::path(frame).stem().string();
@@ -159,9 +127,9 @@ std::string stem_of(const Json& entry, std::size_t i) {
   return stem;
 }
 
-Json row_of(const Json& entry, const std::string& stem) {
-  Json row{stem, frame_in_step(entry) > 0 ? 1 : 0, cut_text(text_at(entry, "name"), kLongestName),
-           cut_text(text_at(entry, "class"), kLongestClass)};
+Json row_of(const Json& entry, const std::string& stem, Json marks) {
+  Json row{stem, cut_text(text_at(entry, "name"), kLongestName), cut_text(text_at(entry, "class"), kLongestClass),
+           std::move(marks)};
   for (const std::string_view column : kColumns) row.push_back(number_at(entry, column));
   return row;
 }
@@ -173,11 +141,14 @@ Json details_of(const Json& entry, const Journal& journal, const Json& kinds) {
     details.json()["resumed"] = true;
   const auto reasons = entry.find("reasons");
   if (reasons != entry.end() && reasons->is_array())
-    details.add("reasons", reasons->size(), [&](std::size_t i) { return cut((*reasons)[i], kLongestText); });
-  const Json number = number_at(entry, "/step");
-  const std::size_t place = number.is_number_integer() ? number.get<std::size_t>() : 0;
-  if (place == 0 || place > journal.steps.size()) return std::move(details.json());
-  const JournalStep& step = journal.steps[place - 1];
+    details.add("reasons", reasons->size(), [&](std::size_t i) { return cut_json((*reasons)[i], kLongestText); });
+  if (const std::string note = text_at(entry, "note"); !note.empty())
+    details.json()["note"] = cut_text(note, kLongestNote);
+  if (const auto extras = entry.find("extras"); extras != entry.end() && !extras->is_null())
+    details.add("extras", 1, [&](std::size_t) { return cut_json(*extras, kLongestText); });
+  const JournalStep* known = step_of(entry, journal);
+  if (known == nullptr) return std::move(details.json());
+  const JournalStep& step = *known;
   details.add("select", step.select.size(), [&](std::size_t i) { return cut_text(step.select[i], kLongestText); });
   const std::size_t frame = frame_in_step(entry);
   if (frame > 0 && frame <= step.frames())
@@ -191,7 +162,13 @@ Json shown_head(const Json& head) {
   Json shown = Json::object();
   for (const char* key : {"program", "scene", "journal", "camera", "resolution", "samples", "noise", "options",
                           "machine", "full_render_seconds", "cache_bytes", "cache_damage", "interrupted"})
-    shown[key] = head.contains(key) ? cut(head.at(key), kLongestText) : Json(nullptr);
+    shown[key] = head.contains(key) ? cut_json(head.at(key), kLongestText) : Json(nullptr);
+  if (Json& journal = shown["journal"]; journal.is_object())
+    if (const std::string note = text_at(head.at("journal"), "note"); !note.empty())
+      journal["note"] = cut_text(note, kLongestNote);
+  // Of where the journal is only the way there from the run: an URL (report/places.h).
+  const Json::json_pointer place("/places/journal/0");
+  shown["journal_url"] = head.contains(place) && head.at(place).is_string() ? head.at(place) : Json(nullptr);
   return shown;
 }
 

@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "frame/exr_tiles.h"
+#include "frame/frame_file.h"
+#include "frame/sheet/contact_sheet.h"
 #include "trace/tree/ray_tree.h"
 
 namespace relook {
@@ -46,6 +48,15 @@ bool are_equal(const std::vector<FrameTiles::Channel>& a, const std::vector<Fram
 }
 
 }  // namespace
+
+Bytes scaled_frame(Bytes file, std::string_view name, std::uint32_t scale) {
+  const Frame frame = decode_exr(file, name);
+  const FrameTiles stored(std::move(file), name);
+  const bool is_float = std::ranges::any_of(
+      stored.channels(), [](const FrameTiles::Channel& channel) { return channel.name == "R" && channel.bytes == 4; });
+  const std::uint32_t width = std::max(1U, (frame.width + scale - 1) / scale);
+  return encode_exr(scaled_down(frame, width), {}, is_float ? PixelFormat::float32 : PixelFormat::half);
+}
 
 std::vector<Bytes> RunPixels::packed_colors() const {
   std::vector<Bytes> packed(current_.count());

@@ -2,6 +2,7 @@
 // the page holds, compressed as in the files, and thumbnails made of them. Two frames are in memory at a time. Used by
 // page_pixels.h.
 #pragma once
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -9,6 +10,10 @@
 #include "frame/preview.h"
 
 namespace relook {
+
+/// A frame's file with pixels at 1/scale (scaled_down() of frame/sheet/contact_sheet.h), its format kept, without
+/// layers. Throws InputError.
+[[nodiscard]] Bytes scaled_frame(Bytes file, std::string_view name, std::uint32_t scale);
 
 /// Takes the frames of a run in their order.
 class RunPixels {

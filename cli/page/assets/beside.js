@@ -39,6 +39,19 @@ const beside = {
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
     return new Uint8Array(await new Response(stream).arrayBuffer());
   },
+
+  /** A tile's bytes from a chunk of OpenEXR's ZIP, of its own memory: inflate, sums, bytes put back in turn. */
+  async unpacked(packed, rawSize) {
+    if (packed.length === rawSize) return packed.slice();
+    const split = await beside.inflated(packed), raw = new Uint8Array(rawSize), evenSize = (rawSize + 1) >> 1;
+    let sum = split[0];
+    raw[0] = sum;
+    for (let i = 1; i < rawSize; ++i) {
+      sum = (sum + split[i] - 128) & 255;
+      raw[i < evenSize ? 2 * i : 2 * (i - evenSize) + 1] = sum;
+    }
+    return raw;
+  },
 };
 
 function relook_pixels(entry, records) {

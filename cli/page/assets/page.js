@@ -2,8 +2,16 @@
 // Data and elements. Whatever comes from data becomes text nodes: nothing is ever parsed as HTML.
 
 const page = {
+  /** What the ids of data end with: in a page of several runs (index_page.h) the number of the one that the address
+      names, null while it shows their cards; "" in any other page. */
+  suffix: (() => {
+    const runs = document.getElementById("runs"), number = Number(new URLSearchParams(location.search).get("run"));
+    if (runs === null) return "";
+    return Number.isInteger(number) && number >= 1 && number <= Number(runs.dataset.runs) ? `-${number}` : null;
+  })(),
+
   data(id) {
-    return JSON.parse(document.getElementById(id).textContent);
+    return JSON.parse(document.getElementById(id + page.suffix).textContent);
   },
 
   byId(id) {
@@ -31,6 +39,12 @@ const page = {
     return page.element("table", {}, body);
   },
 
+  button(text, work, properties = {}) {
+    const button = page.element("button", { type: "button", ...properties }, text);
+    button.addEventListener("click", work);
+    return button;
+  },
+
   count(value) {
     return Number(value).toLocaleString("en-US");
   },
@@ -55,20 +69,46 @@ const page = {
     return report.noise === null || report.noise === undefined ? [] : [`noise ${(100 * report.noise).toPrecision(2)} %`];
   },
 
-  /** "light" or "dark"; as the system has it until it is chosen. */
+  /** What the browser keeps under a name, or null: it may keep nothing. */
+  kept(name) {
+    try {
+      return localStorage.getItem(`relook:${name}`);
+    } catch {
+      return null;
+    }
+  },
+
+  /** Whether the browser keeps it. */
+  keep(name, text) {
+    try {
+      localStorage.setItem(`relook:${name}`, text);
+      return true;
+    } catch {
+      return false;
+    }
+  },
+
+  /** "light" or "dark"; as the system has it until one is chosen, which is remembered. */
   scheme() {
     return document.documentElement.dataset.scheme;
   },
 
-  setScheme(scheme) {
+  showScheme(scheme) {
     document.documentElement.dataset.scheme = scheme;
     document.dispatchEvent(new Event("scheme"));
   },
 
-  followSystemScheme() {
-    const query = matchMedia("(prefers-color-scheme: dark)");
-    page.setScheme(query.matches ? "dark" : "light");
-    query.addEventListener("change", () => page.setScheme(query.matches ? "dark" : "light"));
+  setScheme(scheme) {
+    page.keep("scheme", scheme);
+    page.showScheme(scheme);
+  },
+
+  startScheme() {
+    const query = matchMedia("(prefers-color-scheme: dark)"), chosen = page.kept("scheme");
+    const show = () => page.showScheme(page.kept("scheme") ?? (query.matches ? "dark" : "light"));
+    if (chosen === "light" || chosen === "dark") page.showScheme(chosen);
+    else show();
+    query.addEventListener("change", show);
   },
 
   /** The value of a custom property of page.css. */

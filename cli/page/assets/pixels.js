@@ -83,21 +83,10 @@ class RunFrames {
     }
   }
 
-  /** OpenEXR's ZIP undone: inflate, sums, bytes put back in turn. */
   async rawTile(tile, entry) {
     const { bytes, places } = (await this.bundle(entry)).get(entry), [offset, size] = places.get(tile);
     const { width, height } = this.rect(tile), packed = bytes.subarray(offset, offset + size);
-    const rawSize = width * height * this.layout.channels.reduce((sum, { bytes: each }) => sum + each, 0);
-    if (size === rawSize) return packed.slice();
-    const split = await beside.inflated(packed);
-    const raw = new Uint8Array(rawSize), evenSize = (rawSize + 1) >> 1;
-    let sum = split[0];
-    raw[0] = sum;
-    for (let i = 1; i < rawSize; ++i) {
-      sum = (sum + split[i] - 128) & 255;
-      raw[i < evenSize ? 2 * i : 2 * (i - evenSize) + 1] = sum;
-    }
-    return raw;
+    return beside.unpacked(packed, width * height * this.layout.channels.reduce((sum, { bytes: each }) => sum + each, 0));
   }
 
   /** The records of the bundle that an entry is in, by entry: their bytes, and offset and size of each tile. */
@@ -151,48 +140,3 @@ class RunFrames {
   }
 }
 RunFrames.mostBytes = 3e8;  // kept in memory, packed
-
-/** 8-bit sRGB codes of linear values times 2^exposure, by the bits of a half, or by the upper 17 bits of a float32. */
-class DisplayTable {
-  constructor(exposure, isHalf) {
-    const count = isHalf ? 65536 : 131072, gain = 2 ** exposure;
-    const values = isHalf ? halfValues : new Float32Array(Uint32Array.from({ length: count }, (_, i) => i << 15).buffer);
-    this.shift = isHalf ? 0 : 15;
-    this.codes = new Uint8ClampedArray(count);
-    for (let i = 0; i < count; ++i) {
-      const value = values[i] * gain;
-      const code = value <= 0.0031308 ? 12.92 * value : 1.055 * value ** (1 / 2.4) - 0.055;
-      this.codes[i] = 255 * code;
-    }
-  }
-
-  /** Shows a frame on a canvas of its size, over black. */
-  paint(buffer, canvas) {
-    canvas.width = buffer.width;
-    canvas.height = buffer.height;
-    const context = canvas.getContext("2d"), image = context.createImageData(buffer.width, buffer.height);
-    const { R, G, B } = buffer.planes, { codes, shift } = this;
-    const pixels = new Uint32Array(image.data.buffer);
-    for (let i = 0; i < pixels.length; ++i)
-      pixels[i] = 0xff000000 | (codes[B[i] >>> shift] << 16) | (codes[G[i] >>> shift] << 8) | codes[R[i] >>> shift];
-    context.putImageData(image, 0, 0);
-  }
-}
-
-/** Marks the pixels of which any bit differs; their number. */
-function paintDifference(before, after, canvas) {
-  canvas.width = after.width;
-  canvas.height = after.height;
-  const context = canvas.getContext("2d"), image = context.createImageData(after.width, after.height);
-  const pixels = new Uint32Array(image.data.buffer), names = Object.keys(after.planes);
-  let count = 0;
-  for (let i = 0; i < pixels.length; ++i) {
-    let differs = false;
-    for (const name of names) differs = differs || before.planes[name][i] !== after.planes[name][i];
-    if (!differs) continue;
-    pixels[i] = 0xb0a51eff;
-    ++count;
-  }
-  context.putImageData(image, 0, 0);
-  return count;
-}

@@ -29,7 +29,7 @@ class Plots {
 
   /** The plots: heading, what it says, kind, series of names and values. */
   all() {
-    const full = this.report.full_render_seconds;
+    const full = this.report.full_render_seconds, isMeasured = this.steps.some((step) => fullSeconds(step, full));
     const stages = ["classify", "select", "test", "update", "evaluate", "write"];
     const kinds = [["ray_paths", "ray paths"], ["ray_trees", "ray trees"], ["sample_colors", "sample colours"], ["light_sums", "sums of light"], ["kept_rays", "kept rays"], ["kept_segments", "kept segments"],
       ["kept_terms", "kept terms"], ["kept_vertices", "kept vertices"], ["color_trees", "colour trees"],
@@ -38,9 +38,9 @@ class Plots {
     const shown = [
       { title: "Time by stage", text: "Seconds of each frame. Write: what the frame waits for.", kind: "stacked", unit: page.seconds,
         series: stages.map((stage) => [stage, this.column((step) => step.seconds[stage])]) },
-      full ? { title: "Full render / step", text: `A full render takes ${page.seconds(full)}. Higher is better.`, kind: "line", log: true,
-        unit: (value) => `${Number(value.toPrecision(3))} x`,
-        series: [["ratio", this.column((step) => (step.step > 0 && step.seconds.total > 0 ? full / step.seconds.total : null))]] }
+      isMeasured ? { title: "Full render / step", text: "A full render of each step's own state, where that is known, against the step. Higher is better.",
+        kind: "line", log: true, unit: (value) => `${Number(value.toPrecision(3))} x`,
+        series: [["ratio", this.column((step) => (step.step > 0 && step.seconds.total > 0 ? fullSeconds(step, full) / step.seconds.total : null))]] }
         : { title: "Full render / step", text: "Not measured in this run: replay with --baseline or --verify.", series: [] },
       { title: "Rays", text: "Stored segments tested against the selection, those culled before, and rays shot again.", kind: "line", log: true, unit: page.count,
         series: [["tested", this.column((step) => step.ray_tests)], ["culled", this.column((step) => step.ray_tests_culled)],

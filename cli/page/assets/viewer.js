@@ -1,50 +1,58 @@
 "use strict";
-// Two frames on one canvas: wipe, blink, side by side or one of them; zoom, pan, overlays, and the pixel pointed at.
+// Two frames, A and B, on one canvas: wipe, blink, side by side, one of them or their difference; zoom, pan, overlays,
+// and the pixel pointed at. viewer_input.js has mouse and touch.
 
-/** The white pixels of an image, an overlay's outlines, on black: the frame below them is already there. */
-function whiteParts(image) {
+/** The white pixels of an image, an overlay's outlines, in a colour on black: the frame below them is already there. */
+function outlines(image, color) {
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
   canvas.width = image.naturalWidth;
   canvas.height = image.naturalHeight;
   context.filter = "invert(1) brightness(255) grayscale(1) brightness(255) invert(1)";
   context.drawImage(image, 0, 0);
+  context.filter = "none";
+  context.globalCompositeOperation = "multiply";
+  context.fillStyle = color;
+  context.fillRect(0, 0, canvas.width, canvas.height);
   return canvas;
 }
 
 class Viewer {
-  /** Calls onPixel(x, y) when the pixel changes, and onChange() when zoom, mode or wipe do. */
-  constructor(canvas, { onPixel, onChange }) {
-    Object.assign(this, { canvas, onPixel, onChange });
-    this.before = document.createElement("canvas");
-    this.after = document.createElement("canvas");
-    this.difference = document.createElement("canvas");
-    this.overlays = [];  // canvases of the size of the frame: white outlines on black
-    this.showsDifference = false;
+  /** Calls onPixel(x, y) when the pixel changes, onChange() when zoom, mode or wipe do, and onSwipe(1 or -1). */
+  constructor(canvas, { onPixel, onChange, onSwipe }) {
+    Object.assign(this, { canvas, onPixel, onChange, onSwipe });
+    this.a = document.createElement("canvas");
+    this.b = document.createElement("canvas");
+    this.difference = document.createElement("canvas");  // of A and B, for its mode
+    this.changed = document.createElement("canvas");  // the pixels of which any bit differs, over clear ones
+    this.names = { a: "A", b: "B", difference: "" };  // on the labels
+    this.overlays = [];  // canvases of the size of the frame: outlines on black
+    this.showsChanged = false;
     this.mode = "wipe";
     this.wipe = 0.5;  // of the view's width
     this.scale = 1;  // CSS pixels a pixel
     this.isFitted = true;
     this.center = { x: 0, y: 0 };  // the pixel in the middle of a panel
     this.pixel = null;
-    this.blinkShowsAfter = true;
+    this.marks = null;  // draws over each panel's image, given its place
+    this.blinkShowsB = true;
     new ResizeObserver(() => this.resize()).observe(canvas);
     document.addEventListener("scheme", () => this.draw());
     setInterval(() => this.blink(), 600);
-    this.listen();
+    this.input = new ViewerInput(this);
   }
 
   setMode(mode) {
     this.mode = mode;
-    this.blinkShowsAfter = true;
+    this.blinkShowsB = true;
     if (this.isFitted) this.fit();
-    else this.changed();
+    else this.change();
   }
 
-  /** New contents of before, after, difference or overlays. Sized anew, the canvas forgets files that it showed. */
+  /** New contents of A, B, difference or overlays. Sized anew, the canvas forgets files that it showed. */
   refresh() {
     this.resize();
     if (this.isFitted) this.fit();
-    else this.changed();
+    else this.change();
   }
 
   panels() {
@@ -57,9 +65,9 @@ class Viewer {
   fit() {
     const panel = this.panels()[0];
     this.isFitted = true;
-    this.center = { x: this.after.width / 2, y: this.after.height / 2 };
-    this.scale = Math.min(panel.width / this.after.width, panel.height / this.after.height) || 1;
-    this.changed();
+    this.center = { x: this.b.width / 2, y: this.b.height / 2 };
+    this.scale = Math.min(panel.width / this.b.width, panel.height / this.b.height) || 1;
+    this.change();
   }
 
   /** Keeps the pixel under a point of the view, the middle without one. */
@@ -71,19 +79,19 @@ class Viewer {
     this.center.y += dy / this.scale - dy / limited;
     this.scale = limited;
     this.isFitted = false;
-    this.changed();
+    this.change();
   }
 
   setWipe(wipe) {
     this.wipe = Math.min(1, Math.max(0, wipe));
-    this.changed();
+    this.change();
   }
 
   /** Selects a pixel and, when it is out of view, brings it there. */
   setPixel(x, y) {
     this.pixel = {
-      x: Math.min(this.after.width - 1, Math.max(0, x)),
-      y: Math.min(this.after.height - 1, Math.max(0, y)),
+      x: Math.min(this.b.width - 1, Math.max(0, x)),
+      y: Math.min(this.b.height - 1, Math.max(0, y)),
     };
     const panel = this.panels()[0];
     const reach = { x: panel.width / 2 / this.scale, y: panel.height / 2 / this.scale };
@@ -95,14 +103,14 @@ class Viewer {
     this.onPixel(this.pixel.x, this.pixel.y);
   }
 
-  changed() {
+  change() {
     this.draw();
     this.onChange();
   }
 
   blink() {
     if (this.mode !== "blink" || this.canvas.clientWidth === 0) return;
-    this.blinkShowsAfter = !this.blinkShowsAfter;
+    this.blinkShowsB = !this.blinkShowsB;
     this.draw();
   }
 
@@ -116,37 +124,49 @@ class Viewer {
 
   draw() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || this.after.width === 0) return;
+    if (width === 0 || this.b.width === 0) return;
     const context = this.canvas.getContext("2d"), ratio = this.canvas.width / width;
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, width, height);
     const panels = this.panels(), line = this.wipe * width;
     if (this.mode === "side") {
-      this.drawImage(context, this.before, panels[0], 0, panels[0].width);
-      this.drawImage(context, this.after, panels[1], 0, panels[1].width);
-      this.label(context, "before", panels[0].x + 8, "left");
-      this.label(context, "after", panels[1].x + 8, "left");
+      for (const [i, side] of ["a", "b"].entries()) {
+        this.drawImage(context, this[side], panels[i], 0, panels[i].width);
+        this.label(context, side, panels[i].x, panels[i].x + panels[i].width, "left");
+      }
     } else if (this.mode === "wipe") {
-      this.drawImage(context, this.before, panels[0], 0, line);
-      this.drawImage(context, this.after, panels[0], line, width);
-      context.fillStyle = "#000";
-      context.fillRect(line - 1.5, 0, 3, height);
-      context.fillStyle = "#fff";
-      context.fillRect(line - 0.5, 0, 1, height);
-      this.label(context, "before", line - 8, "right");
-      this.label(context, "after", line + 8, "left");
+      this.drawImage(context, this.a, panels[0], 0, line);
+      this.drawImage(context, this.b, panels[0], line, width);
+      this.drawLine(context, line, height);
+      this.label(context, "a", 0, line, "right");
+      this.label(context, "b", line, width, "left");
     } else {
-      const isAfter = this.mode === "after" || (this.mode === "blink" && this.blinkShowsAfter);
-      this.drawImage(context, isAfter ? this.after : this.before, panels[0], 0, width);
-      this.label(context, isAfter ? "after" : "before", 8, "left");
+      const side = this.mode === "blink" ? (this.blinkShowsB ? "b" : "a") : this.mode;
+      this.drawImage(context, this[side], panels[0], 0, width);
+      this.label(context, side, 0, width, "left");
     }
+  }
+
+  /** The wipe's line, with a handle for fingers. */
+  drawLine(context, line, height) {
+    context.fillStyle = "#000";
+    context.fillRect(line - 1.5, 0, 3, height);
+    context.fillStyle = "#fff";
+    context.fillRect(line - 0.5, 0, 1, height);
+    context.beginPath();
+    context.arc(line, height - 24, 9, 0, 2 * Math.PI);
+    context.fill();
+    context.fillStyle = "#000";
+    context.font = "11px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.fillText("\u2194", line, height - 20);
   }
 
   /** A panel's image, between two places of the panel. */
   drawImage(context, image, panel, from, to) {
     const x = panel.x + panel.width / 2 - this.center.x * this.scale;
     const y = panel.height / 2 - this.center.y * this.scale;
-    const width = this.after.width * this.scale, height = this.after.height * this.scale;
+    const width = this.b.width * this.scale, height = this.b.height * this.scale;
     context.save();
     context.beginPath();
     context.rect(panel.x + from, 0, to - from, panel.height);
@@ -157,8 +177,9 @@ class Viewer {
     context.globalCompositeOperation = "lighten";
     for (const overlay of this.overlays) context.drawImage(overlay, x, y, width, height);
     context.globalCompositeOperation = "source-over";
-    if (this.showsDifference) context.drawImage(this.difference, x, y, width, height);
+    if (this.showsChanged) context.drawImage(this.changed, x, y, width, height);
     if (this.pixel) this.markPixel(context, x, y);
+    this.marks?.(context, x, y);
     context.restore();
   }
 
@@ -172,14 +193,20 @@ class Viewer {
     context.strokeRect(left - 0.5, top - 0.5, size + 1, size + 1);
   }
 
-  label(context, text, x, align) {
+  /** The name of a side, in the strip from one place of the view to another, as far as it has room there. */
+  label(context, side, from, to, align) {
+    const prefix = side === "difference" ? "" : `${side.toUpperCase()}  `;
     context.font = "12px system-ui, sans-serif";
-    context.textAlign = align;
-    const width = context.measureText(text).width + 10;
-    context.fillStyle = "rgb(0 0 0 / 65%)";
-    context.fillRect(align === "left" ? x - 5 : x - width + 5, 6, width, 20);
+    let text = prefix + this.names[side];
+    const room = to - from - 26;
+    while (text.length > 1 && context.measureText(text).width > room) text = `${text.slice(0, -2).trimEnd()}\u2026`;
+    if (text.length <= 2 && room < 20) return;
+    const width = context.measureText(text).width + 12, left = align === "left" ? from + 6 : to - 6 - width;
+    context.fillStyle = "rgb(0 0 0 / 70%)";
+    context.fillRect(left, 6, width, 20);
     context.fillStyle = "#fff";
-    context.fillText(text, x, 20);
+    context.textAlign = "left";
+    context.fillText(text, left + 6, 20);
   }
 
   panelAt(x) {
@@ -192,56 +219,25 @@ class Viewer {
     const panel = this.panelAt(point.x);
     const x = Math.floor(this.center.x + (point.x - panel.x - panel.width / 2) / this.scale);
     const y = Math.floor(this.center.y + (point.y - panel.height / 2) / this.scale);
-    return x >= 0 && y >= 0 && x < this.after.width && y < this.after.height ? { x, y } : null;
+    return x >= 0 && y >= 0 && x < this.b.width && y < this.b.height ? { x, y } : null;
   }
 
-  isOnWipe(point) {
-    return this.mode === "wipe" && Math.abs(point.x - this.wipe * this.canvas.clientWidth) < 7;
+  isOnWipe(point, reach = 7) {
+    return this.mode === "wipe" && Math.abs(point.x - this.wipe * this.canvas.clientWidth) < reach;
   }
 
-  listen() {
-    const { canvas } = this;
-    const place = (event) => ({ x: event.offsetX, y: event.offsetY });
-    let drag = null;
-    canvas.addEventListener("pointerdown", (event) => {
-      const point = place(event);
-      drag = { ...point, isWipe: this.isOnWipe(point) };
-      canvas.setPointerCapture(event.pointerId);
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      const point = place(event);
-      canvas.classList.toggle("on-wipe", drag ? drag.isWipe : this.isOnWipe(point));
-      canvas.classList.toggle("panning", drag !== null && !drag.isWipe);
-      if (drag?.isWipe) {
-        this.setWipe(point.x / canvas.clientWidth);
-      } else if (drag) {
-        this.center.x -= (point.x - drag.x) / this.scale;
-        this.center.y -= (point.y - drag.y) / this.scale;
-        if (point.x !== drag.x || point.y !== drag.y) this.isFitted = false;
-        Object.assign(drag, point);
-        this.draw();
-      } else {
-        const pixel = this.pixelAt(point);
-        if (pixel) {
-          this.pixel = pixel;
-          this.draw();
-          this.onPixel(pixel.x, pixel.y);
-        }
-      }
-    });
-    const end = () => {
-      drag = null;
-      canvas.classList.remove("panning");
-    };
-    canvas.addEventListener("pointerup", end);
-    canvas.addEventListener("pointercancel", end);
-    canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.zoom(this.scale * 2 ** (-event.deltaY / 240), place(event));
-    }, { passive: false });
-    canvas.addEventListener("dblclick", (event) => {
-      if (this.isFitted) this.zoom(1, place(event));
-      else this.fit();
-    });
+  /** Moves the view along with a pointer. */
+  pan(dx, dy) {
+    this.center.x -= dx / this.scale;
+    this.center.y -= dy / this.scale;
+    if (dx !== 0 || dy !== 0) this.isFitted = false;
+    this.draw();
+  }
+
+  point(pixel) {
+    if (!pixel) return;
+    this.pixel = pixel;
+    this.draw();
+    this.onPixel(pixel.x, pixel.y);
   }
 }

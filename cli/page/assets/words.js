@@ -42,20 +42,45 @@ const words = {
     return typeof value === "string" ? `"${value}"` : JSON.stringify(value);
   },
 
+  /** A value for a small place: numbers to four digits, files without folders. */
+  short(value) {
+    const one = (part) => (typeof part === "number" ? String(Number(part.toPrecision(4))) : part);
+    if (typeof value === "number") return one(value);
+    if (typeof value === "string") return value.split("/").pop();
+    if (Array.isArray(value) && value.every((part) => typeof part === "number")) return value.map(one).join(", ");
+    const text = JSON.stringify(value) ?? "";
+    return text.length > 48 ? `${text.slice(0, 47)}…` : text;
+  },
+
+  /** What an axis of a wedge is called: by its label, else by its path. */
+  axis({ path, label }) {
+    if (label) return label;
+    const tokens = words.tokens(path);
+    return [tokens[0] === "scene" ? "" : tokens[1] ?? "", words.property(tokens).replaceAll(",", "")].filter((text) => text).join(" ") || path;
+  },
+
+  /** An operation for a small place: "Key intensity 4". */
+  brief(operation) {
+    if (operation.op !== "replace") return words.operation(operation, words.short);
+    const { path, value } = operation, isOpaque = /colorfactor$/i.test(path) && Array.isArray(value) && value.length === 4 && value[3] === 1;
+    return `${words.axis({ path })} ${words.short(isOpaque ? value.slice(0, 3) : value)}`;
+  },
+
   /** Indented, lists of numbers in one line. */
   json(value) {
     return JSON.stringify(value, null, 1).replace(/\[\s*(-?[\d.e+-]+(?:,\s*-?[\d.e+-]+)*)\s*\]/g,
       (match, list) => `[${list.replace(/,\s*/g, ", ")}]`);
   },
 
-  operation({ op, path, from, value }) {
+  /** `show` makes the text of a value. */
+  operation({ op, path, from, value }, show = words.value) {
     const tokens = words.tokens(path), entity = words.entity(tokens), property = words.property(tokens);
     const place = property ? `${entity}: ${property}` : entity;
     switch (op) {
       case "add":
-        return property ? `${place} becomes ${words.value(value)}` : `${entity} is added: ${words.value(value)}`;
+        return property ? `${place} becomes ${show(value)}` : `${entity} is added: ${show(value)}`;
       case "replace":
-        return `${place} becomes ${words.value(value)}`;
+        return `${place} becomes ${show(value)}`;
       case "remove":
         return `${place} is removed`;
       case "move":
@@ -63,7 +88,7 @@ const words = {
       case "copy":
         return `${place} is copied from ${from}`;
       default:
-        return `only if ${place} is ${words.value(value)}`;
+        return `only if ${place} is ${show(value)}`;
     }
   },
 };
