@@ -99,9 +99,17 @@ class Blame {
   }
 
   void run(const Journal& journal, std::uint32_t steps) {
+    SceneHistory history(journal);
     follow_edits(JournalWalk(journal, 1, steps), [&](const JournalEvent& event) {
       console_.check_interrupt();
-      const PixelStep result = pixel_.step(event.edit(), journal.file, journal.path.parent_path());
+      if (event.back_to) {
+        static_cast<void>(pixel_.step([&](SceneState& state) {
+          return EditedScene{go_back(state, journal, event, history), {}};
+        }));
+        paths_ = pixel_.paths();
+      }
+      const PixelStep result =
+          pixel_.step([&](SceneState& state) { return make_edit(state, journal, event, history); });
       if (result.is_changed) note(event.place, event.step->name, result);
     });
   }

@@ -143,7 +143,7 @@ ExitCode run_compare(const Arguments& arguments, Console& console) {
   if (!arguments.output.empty()) make_folders(arguments.output);  // found out before the work
   Json pairs = Json::array();
   Verdict verdict = Verdict::equal;
-  ComparePage page(inputs[0], arguments.white);
+  ComparePage page(inputs[0], arguments.white, arguments.exposure);
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     const auto share = [&](std::size_t done) {
       return static_cast<double>(done) / static_cast<double>(inputs.size() - 1);

@@ -6,7 +6,9 @@
 #include "cache/cache.h"
 #include "input/load_cache.h"
 #include "input/load_scene.h"
-#include "inspect_journal.h"
+#include "inspect/inspect_cameras.h"
+#include "inspect/inspect_journal.h"
+#include "inspect/inspect_paths.h"
 #include "light/environment_light.h"
 #include "options/outputs.h"
 #include "run/step_text.h"
@@ -211,6 +213,16 @@ ExitCode run_inspect(const Arguments& arguments, Console& console) {
   require_view_of_scene(arguments, kind);
   if (arguments.print_look) {
     print_look(arguments, kind, console);
+    return ExitCode::ok;
+  }
+  if (arguments.lists_paths || arguments.lists_cameras) {
+    if (kind != Kind::scene && kind != Kind::cache)
+      throw UsageError(std::string(arguments.lists_paths ? "--paths: " : "--cameras: ") + arguments.inputs[0] +
+                       " is neither a scene nor a cache");
+    if (arguments.lists_paths)
+      inspect_paths(arguments, console);
+    else
+      inspect_cameras(arguments, console);
     return ExitCode::ok;
   }
   switch (kind) {

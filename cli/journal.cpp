@@ -6,7 +6,9 @@
 
 #include "edit/apply.h"
 #include "edit/draft/draft_diff.h"
-#include "input/load_scene.h"
+#include "edit/draft/draft_moves.h"
+#include "edit/draft/draft_rig.h"
+#include "input/open_look.h"
 #include "options/outputs.h"
 #include "scene/gltf/animation.h"
 #include "verbs.h"
@@ -17,6 +19,7 @@ namespace {
 /// The animation that --animation names or counts; without it the only or first one, with a warning.
 Animation choose_animation(const Arguments& arguments, Console& console) {
   const std::string &scene = arguments.inputs[0], &choice = arguments.animation;
+  if (is_cache_folder(scene)) throw InputError(scene, "", "a cache holds no animations; give the scene that it is of");
   std::vector<Animation> animations = import_animations(scene);
   if (animations.empty()) throw InputError(scene, "", "the scene has no animations");
   std::vector<std::string> names;
@@ -41,9 +44,11 @@ Animation choose_animation(const Arguments& arguments, Console& console) {
 
 /// Throws InputError when the scenes are seen by different cameras of their own: no journal moves a camera.
 void require_one_camera(const Arguments& arguments, const Camera& before, const Camera& after) {
-  const auto view = [](const Camera& camera) {
+  // The shape of a cache's image is its own.
+  const bool has_shape = !is_cache_folder(arguments.inputs[0]) && !is_cache_folder(arguments.inputs[1]);
+  const auto view = [&](const Camera& camera) {
     return std::tuple(camera.node, camera.orthographic, camera.eye, camera.right, camera.up, camera.forward,
-                      camera.half_width, camera.half_height, camera.near, camera.far);
+                      has_shape ? camera.half_width : 0, has_shape ? camera.half_height : 0, camera.near, camera.far);
   };
   if ((!before.node.empty() || !after.node.empty()) && view(before) != view(after))
     throw InputError(arguments.inputs[1], "",
@@ -52,12 +57,8 @@ void require_one_camera(const Arguments& arguments, const Camera& before, const 
 }
 
 DiffDraft make_diff(const Arguments& arguments, const SceneState& before, Console& console) {
-  LoadedDocument loaded = load_document(arguments.inputs[1], arguments.view);
-  const Camera camera = set_up_inspection(loaded, arguments.view);
-  console.warn(loaded.warnings);
-  require_not_outputs(arguments, loaded.files, "a file of the scene");
-  const SceneState after(std::move(loaded.document), camera, std::make_shared<PyramidStore>(),
-                         arguments.view.sampling.integrator);
+  const SceneState after = open_look_state(arguments.inputs[1], arguments, console);
+  const Camera& camera = after.scene().camera;
   require_one_camera(arguments, before.scene().camera, camera);
   const std::filesystem::path journal(arguments.output);
   return draft_diff(before.document(), after.document(), journal.stem().string() + ".files");
@@ -71,6 +72,14 @@ DiffDraft make_draft(const Arguments& arguments, const SceneState& state, Consol
       return {draft_variants(state.document()), {}};
     case JournalSource::animation:
       return {draft_animation(state, choose_animation(arguments, console), arguments.sample_times), {}};
+    case JournalSource::turntable:
+      return {draft_turntable(state.document(), arguments.inputs[1], arguments.turntable), {}};
+    case JournalSource::aim:
+      return {
+          draft_aim(state.document(), state.scene().camera, arguments.inputs[1], arguments.inputs[2], arguments.aim),
+          {}};
+    case JournalSource::rig:
+      return {draft_rig(state.document(), state.scene().camera, arguments.rig), {}};
     case JournalSource::wedge:
       break;
   }
@@ -107,12 +116,7 @@ class BroughtFiles {
 }  // namespace
 
 ExitCode run_journal(const Arguments& arguments, Console& console) {
-  LoadedDocument loaded = load_document(arguments.inputs[0], arguments.view);
-  const Camera camera = set_up_inspection(loaded, arguments.view);
-  console.warn(loaded.warnings);
-  require_not_outputs(arguments, loaded.files, "a file of the scene");
-  SceneState state(std::move(loaded.document), camera, std::make_shared<PyramidStore>(),
-                   arguments.view.sampling.integrator);
+  SceneState state = open_look_state(arguments.inputs[0], arguments, console);
   const auto [draft, files] = make_draft(arguments, state, console);
   console.warn(draft.warnings);
   const std::string text = journal_text(draft);

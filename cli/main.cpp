@@ -39,8 +39,20 @@ ExitCode run_verb(const Arguments& arguments, Console& console) {
       return run_plan(arguments, console);
     case Verb::journal:
       return run_journal(arguments, console);
+    case Verb::export_scene:
+      return run_export(arguments, console);
+    case Verb::watch:
+      return run_watch(arguments, console);
+    case Verb::report:
+      return run_report(arguments, console);
+    case Verb::sheet:
+      return run_sheet(arguments, console);
     case Verb::completions:
       return run_completions(arguments, console);
+    case Verb::schema:
+      return run_schema(arguments, console);
+    case Verb::complete:
+      return run_complete(arguments, console);
   }
   return ExitCode::usage;
 }
@@ -66,7 +78,9 @@ int guarded(const Work& work, const Report& report) {
 }
 
 /// Whether a verb makes frames; others read, and write a small file in the end, if any.
-bool makes_pictures(Verb verb) { return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay; }
+bool makes_pictures(Verb verb) {
+  return verb == Verb::render || verb == Verb::preprocess || verb == Verb::replay || verb == Verb::watch;
+}
 
 /// RELOOK_SANDBOX=off is for debuggers and tools that trace, start programs or write files of their own.
 bool wants_sandbox() {

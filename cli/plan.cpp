@@ -18,6 +18,7 @@ namespace {
 Json frame_json(const PlannedFrame& frame) {
   return {{"step", frame.place.step},
           {"name", frame.name},
+          {"from", frame.from},
           {"frame", frame_name(frame.place)},
           {"class", change_class_name(frame.classification.change)},
           {"reasons", frame.classification.reasons},

@@ -9,12 +9,15 @@
 #include "frame/frame_layers.h"
 #include "input/load_cache.h"
 #include "input/load_scene.h"
-#include "options/needless_options.h"
+#include "input/run_input.h"
 #include "options/outputs.h"
+#include "page/index_page.h"
 #include "replay/chosen_parameters.h"
 #include "replay/memory_needs.h"
 #include "report/run_source.h"
+#include "run/cache_structures.h"
 #include "run/journal_run.h"
+#include "run/run_index.h"
 #include "verbs.h"
 
 namespace relook {
@@ -90,6 +93,7 @@ std::vector<RunPlan> plan_runs(const Arguments& arguments, const std::vector<Jou
   const FrameStyle style{arguments.float_frames, arguments.layers, view != nullptr ? view->id() : ""};
   std::vector<RunPlan> plans;
   plans.reserve(journals.size());
+  if (journals.size() > 1) require_free_index(arguments.output);
   for (const Journal& journal : journals) {
     std::filesystem::path folder = arguments.output;
     if (journals.size() > 1) folder /= journal.name;
@@ -113,6 +117,12 @@ Json result_json(const Arguments& arguments, const RunPlan& plan) {
   return result;
 }
 
+/// RUN/index.html, over the runs of this command and others beside them.
+void write_index_of(const std::vector<RunPlan>& plans) {
+  const std::filesystem::path folder = plans.front().folder().parent_path();
+  write_index(folder / kIndexName, runs_at(folder));
+}
+
 void require_fitting(const Arguments& arguments, const OpenedCache& opened) {
   const std::string& cache = arguments.inputs[0];
   if (!arguments.scene.empty()) {
@@ -120,7 +130,9 @@ void require_fitting(const Arguments& arguments, const OpenedCache& opened) {
     require_not_outputs(arguments, loaded.files, "a file of the scene");
     if (loaded.hash != opened.scene_hash) require_sound({CacheFault::other_scene, "", ""}, cache);
   }
-  if (arguments.layers) require_layers(opened.state->scene());
+  if (arguments.layers || arguments.relight) require_layers(opened.state->scene());
+  if (arguments.relight && opened.image.view.integrator != Integrator::path)
+    throw UsageError("--relight: frames of --integrator whitted are no sums of lights; preprocess with path");
   if (opened.image.view.integrator == Integrator::path) return;  // it has no counters
   const std::uint32_t shadow_bits = opened.image.view.shadow_bits;
   if (arguments.shadow_bits.value_or(shadow_bits) != shadow_bits)
@@ -205,33 +217,6 @@ void require_integrator(const Json& manifest, const Arguments& arguments) {
                     "; preprocess again with --integrator " + std::string(integrator_word(*arguments.integrator)));
 }
 
-/// The structures of the cache, where the command line does not say otherwise; in words, what becomes of its tunnels if
-/// it does.
-void take_structures_of(const Json& manifest, Arguments& arguments, Console& console) {
-  const Json& storage = manifest["content"]["storage"];
-  const auto number = [&](const char* key) { return storage[key].get<std::uint32_t>(); };
-  StructureOptions stored = usual_structures(integrator_of(manifest));
-  stored.groups = number("groups");
-  stored.atoms = number("atoms");
-  stored.color_trees_percent = storage["color_trees_percent"].get<double>();
-  const bool has_tunnels = number("tunnels") > 0;
-  if (has_tunnels) {
-    stored.tunnels = number("tunnels");
-    stored.tunnel_levels = number("tunnel_levels");
-    if (!storage["most_tunnels"].is_null()) stored.most_tunnels = storage["most_tunnels"].get<std::uint64_t>();
-  }
-  const Integrator integrator = integrator_of(manifest);
-  console.warn(idle_structures_warning(arguments, integrator));
-  take_structures(stored, integrator, arguments);
-  const StructureOptions& wanted = arguments.structures;
-  const bool is_same = wanted.tunnels == stored.tunnels && wanted.tunnel_levels == stored.tunnel_levels &&
-                       wanted.most_tunnels == stored.most_tunnels &&
-                       (stored.tunnels < 2 || wanted.atoms == stored.atoms);
-  if (has_tunnels && wanted.tunnels > 0 && !is_same)
-    console.warn({arguments.inputs[0] + ": its tunnels are of other --tunnels, --tunnel-levels, --most-tunnels or " +
-                  "--atoms; others are built when a step needs them"});
-}
-
 }  // namespace
 
 ExitCode run_replay(const Arguments& given, Console& console) {
@@ -259,6 +244,7 @@ ExitCode run_replay(const Arguments& given, Console& console) {
     pixels_different += is_complete ? plans[i].pixels_different() : command.run(i);
     runs.push_back(result_json(arguments, plans[i]));
   }
+  if (plans.size() > 1 && arguments.report == ReportKind::html) write_index_of(plans);
   console.json({{"runs", std::move(runs)}, {"pixels_different", pixels_different}});
   return pixels_different == 0 ? ExitCode::ok : ExitCode::difference;
 }

@@ -16,6 +16,12 @@ namespace relook {
 [[nodiscard]] ExitCode run_blame(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_plan(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_journal(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_export(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_watch(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_report(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_sheet(const Arguments& arguments, Console& console);
 [[nodiscard]] ExitCode run_completions(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_schema(const Arguments& arguments, Console& console);
+[[nodiscard]] ExitCode run_complete(const Arguments& arguments, Console& console);
 
 }  // namespace relook

@@ -1,12 +1,15 @@
 #include "input/compare_inputs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <iterator>
+#include <limits>
 
 #include "base/error.h"
 #include "compare/file_comparison.h"
 #include "compare_text.h"
+#include "frame/frame_file.h"
 #include "frame/preview.h"
 
 namespace relook {
@@ -27,7 +30,53 @@ Pictures pictures_of(const Frame& a, const Frame& b, const FrameComparison& comp
     if (!comparison.flip_errors.empty()) error = comparison.flip_errors[i];
     errors.pixels[i] = Rgba(3 * error, 3 * error - 1, 3 * error - 2, 1);
   }
-  return {encode_png(a, {nullptr, exposure}), encode_png(b, {nullptr, exposure}), encode_png(errors)};
+  return {encode_png(a, {nullptr, exposure}),
+          encode_png(b, {nullptr, exposure}),
+          encode_png(errors),
+          {},
+          {},
+          a.width,
+          a.height,
+          0};
+}
+
+bool are_halves(const Frame& frame) {
+  const auto is_half = [](float value) { return std::isnan(value) || stored_value(value, PixelFormat::half) == value; };
+  return std::ranges::all_of(
+      frame.pixels, [&](const Rgba& p) { return is_half(p.r) && is_half(p.g) && is_half(p.b) && is_half(p.a); });
+}
+
+double badness_of(const FrameComparison& comparison) {
+  const double value = comparison.flip ? comparison.flip->mean : comparison.difference.max_error;
+  return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
+/// Keeps the pictures of two frames while they are among those that differ most.
+void keep_pictures(const std::string& name, const FileComparison& files, double exposure, PairComparison& pair) {
+  const double badness = badness_of(files.comparison);
+  const auto least =
+      std::ranges::min_element(pair.pictures, {}, [](const auto& entry) { return entry.second.badness; });
+  if (pair.pictures.size() >= kMostPictures) {
+    if (badness <= least->second.badness) return;
+    pair.pictures.erase(least);
+  }
+  Pictures pictures = pictures_of(files.a, files.b, files.comparison, exposure);
+  pictures.badness = badness;
+  const PixelFormat format = are_halves(files.a) && are_halves(files.b) ? PixelFormat::half : PixelFormat::float32;
+  pictures.pixels_a = encode_exr(files.a, {}, format);
+  pictures.pixels_b = encode_exr(files.b, {}, format);
+  pair.pictures[name] = std::move(pictures);
+  // Those that differ least lose their pixels first.
+  for (;;) {
+    std::size_t bytes = 0;
+    Pictures* mildest = nullptr;
+    for (auto& [other, kept] : pair.pictures) {
+      bytes += kept.pixels_a.size() + kept.pixels_b.size();
+      if (!kept.pixels_a.empty() && (mildest == nullptr || kept.badness < mildest->badness)) mildest = &kept;
+    }
+    if (bytes <= kMostPixelBytes || mildest == nullptr) return;
+    mildest->pixels_a = mildest->pixels_b = {};
+  }
 }
 
 FileComparison compared_files(const std::filesystem::path& a, const std::filesystem::path& b,
@@ -49,8 +98,7 @@ void compare_two(const std::string& name, const std::filesystem::path& a, const 
                  const Arguments& arguments, PairComparison& pair) {
   FileComparison files = compared_files(a, b, arguments);
   const bool has_page = !arguments.html.empty() || !arguments.output.empty();
-  if (has_page && files.comparison.worst && pair.pictures.size() < kMostPictures)
-    pair.pictures[name] = pictures_of(files.a, files.b, files.comparison, arguments.exposure);
+  if (has_page && files.comparison.worst) keep_pictures(name, files, arguments.exposure, pair);
   add_frame(pair, name, std::move(files.comparison));
 }
 

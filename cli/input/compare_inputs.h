@@ -1,5 +1,6 @@
 // What `relook compare` is given: single frames, or folders of frames, each compared with the first.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -14,6 +15,7 @@
 namespace relook {
 
 inline constexpr std::size_t kMostPictures = 24;
+inline constexpr std::size_t kMostPixelBytes = 64'000'000;  // of them, of a pair
 
 /// Frames by name in one folder: that of a run, or any folder with .exr files.
 struct FrameFolder {
@@ -27,11 +29,14 @@ struct FrameFolder {
 /// without FLIP, the pixels that differ in white.
 struct Pictures {
   Bytes a, b, errors;
+  Bytes pixels_a, pixels_b;  // as frames (frame_file.h), in one format that holds both exactly; empty: no room
+  std::uint32_t width = 0, height = 0;
+  double badness = 0;  // how far apart they are: mean FLIP or, without, the largest error
 };
 
 struct PairComparison {
   std::vector<std::pair<std::string, FrameComparison>> frames;  // by name, without flip_errors
-  std::map<std::string, Pictures> pictures;                     // by name, of the first kMostPictures that differ
+  std::map<std::string, Pictures> pictures;                     // by name, of the kMostPictures that differ most
   std::vector<std::string> missing;                             // in one of the two folders only
   FrameDifference total;                                        // of the frames' own figures
   std::size_t layers_different = 0;                             // of all frames

@@ -12,7 +12,9 @@
 #include "base/error.h"
 #include "base/import_memory.h"
 #include "frame/display_view.h"
+#include "options/completion.h"
 #include "options/help_footer.h"
+#include "options/manual.h"
 #include "options/needless_options.h"
 #include "options/values.h"
 #include "options/verb_options.h"
@@ -29,10 +31,12 @@ void add_footers(CLI::App& app, const std::string& verb) {
     add_footers(*part, verb.empty() ? part->get_name() : verb + " " + part->get_name());
 }
 
-constexpr std::array<std::string_view, 4> kJournalSources{"diff", "variants", "animation", "wedge"};
+constexpr std::array<std::string_view, 7> kJournalSources{"diff",      "variants", "animation", "wedge",
+                                                          "turntable", "aim",      "rig"};
 
-constexpr std::array<std::string_view, 11> kVerbs{"render", "preprocess", "replay", "compare", "inspect",    "check",
-                                                  "tune",   "journal",    "blame",  "plan",    "completions"};
+constexpr std::array<std::string_view, 16> kVerbs{"render", "preprocess", "replay", "compare", "inspect",     "check",
+                                                  "tune",   "journal",    "blame",  "plan",    "completions", "schema",
+                                                  "export", "watch",      "report", "sheet"};
 constexpr std::array<std::string_view, 5> kProgressStyles{"auto", "plain", "json", "openjd", "none"};
 
 /// The place of `word` among `choices`. Throws UsageError with the nearest one.
@@ -64,6 +68,8 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   if (!raw.verify.empty()) arguments.verify_percent = parse_percent("--verify", raw.verify, false);
   if (!(std::fabs(arguments.exposure) <= kMostExposure))
     throw UsageError("--exposure: a number of stops from -100 to 100");
+  if (arguments.own_exposure && !(std::fabs(*arguments.own_exposure) <= kMostExposure))
+    throw UsageError("--exposure: a number of stops from -100 to 100");
   ViewOptions& sampling = arguments.view.sampling;
   if (!raw.integrator.empty())
     arguments.integrator = static_cast<Integrator>(place_of(raw.integrator, kIntegratorWords, "--integrator"));
@@ -75,16 +81,6 @@ void resolve(const RawTexts& raw, Arguments& arguments) {
   sampling.shadow_bits = sampling.integrator == Integrator::whitted ? arguments.shadow_bits.value_or(0) : 0;
   arguments.view.auto_lights = !raw.lights.empty();
   arguments.progress = static_cast<ProgressStyle>(place_of(raw.progress, kProgressStyles, "--progress style"));
-}
-
-/// What CLI11 shows of a value's type: "TEXT:{weight,lru}" has the choices "weight" and "lru".
-std::vector<std::string> choices_of(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
-  const std::size_t begin = type.find('{'), end = type.find('}');
-  std::vector<std::string> choices;
-  if (begin != std::string::npos && end != std::string::npos)
-    choices = CLI::detail::split(type.substr(begin + 1, end - begin - 1), ',');
-  return choices;
 }
 
 /// Takes FILE of "plan CACHE JOURNAL --json FILE", the third word, as if it were written --json=FILE.
@@ -131,14 +127,34 @@ void resolve_compare(const RawTexts& raw, Arguments& arguments) {
     throw UsageError("--peak: a finite number above 0");
 }
 
-/// `inspect --look SCENE`: the word after --look is the input when there is no other.
+/// `inspect --look SCENE`, `inspect --paths SCENE`: the word after the option is the input when there is no other.
 void resolve_inspect(const CLI::App& verb, const RawTexts& raw, Arguments& arguments) {
   std::string& patch = arguments.view.look_patch;
   if (arguments.inputs.empty() && !patch.empty()) arguments.inputs.push_back(std::exchange(patch, ""));
+  std::string& filter = arguments.paths_filter;
+  if (arguments.inputs.empty() && !filter.empty()) arguments.inputs.push_back(std::exchange(filter, ""));
   if (arguments.inputs.empty()) throw UsageError("INPUT is required");
-  arguments.print_look = verb.count("--look") > 0 && arguments.scene.empty();
+  arguments.lists_paths = verb.count("--paths") > 0;
+  arguments.print_look =
+      verb.count("--look") > 0 && arguments.scene.empty() && !arguments.lists_paths && !arguments.lists_cameras;
   for (const CLI::Option* option : raw.inspection_view)
     if (option->count() > 0) arguments.view_options.push_back("--" + option->get_lnames().front());
+}
+
+void resolve_journal(Arguments& arguments) {
+  const bool is_turntable = arguments.journal_source == JournalSource::turntable;
+  // Without a node all of them turn, or, with --environment, none.
+  if (is_turntable && arguments.inputs.size() < 2)
+    arguments.inputs.emplace_back(arguments.turntable.environment ? "" : "all");
+}
+
+/// Command lines that are not those of --help.
+std::optional<ParsedCommandLine> parse_aside(const std::vector<std::string_view>& words) {
+  if (words.size() == 2 && std::ranges::count(words, "--version") == 1 && std::ranges::count(words, "--json") == 1)
+    return ParsedCommandLine{std::nullopt, json_text(version_json(), 2) + "\n"};
+  if (words.size() == 1 && words[0] == "--help-man") return ParsedCommandLine{std::nullopt, manual_text()};
+  if (!words.empty() && words[0] == "complete") return ParsedCommandLine{completion_arguments(words), ""};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -162,28 +178,10 @@ void take_structures(const StructureOptions& others, Integrator integrator, Argu
   structures.color_trees_percent = named.color_trees_percent.value_or(others.color_trees_percent);
 }
 
-std::vector<VerbHelp> command_line_help() {
-  CLI::App app;
-  Arguments arguments;
-  RawTexts raw;
-  add_verbs(app, arguments, raw);
-  std::vector<VerbHelp> verbs;
-  for (const CLI::App* verb : app.get_subcommands([](CLI::App*) { return true; })) {
-    VerbHelp help{verb->get_name(), verb->get_description(), {}};
-    for (const CLI::Option* option : verb->get_options()) {
-      OptionHelp entry{{}, option->get_description(), option->get_expected_min() > 0, choices_of(*option)};
-      for (const std::string& name : option->get_snames()) entry.names.push_back("-" + name);
-      for (const std::string& name : option->get_lnames()) entry.names.push_back("--" + name);
-      if (!entry.names.empty()) help.options.push_back(std::move(entry));
-    }
-    verbs.push_back(std::move(help));
-  }
-  return verbs;
-}
-
 ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
+  if (std::optional<ParsedCommandLine> parsed = parse_aside({argv + 1, argv + std::max(argc, 1)})) return *parsed;
   CLI::App app("relook: replays edits of a scene and recomputes exactly the part of the image that changed", "relook");
-  app.set_version_flag("--version", version_text);
+  app.set_version_flag("--version", version_text, "Print versions and exit; with --json all of them, as one object");
   app.require_subcommand(1);
   Arguments arguments;
   RawTexts raw;
@@ -215,6 +213,7 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv) {
   if (arguments.verb == Verb::compare) resolve_compare(raw, arguments);
   if (arguments.verb == Verb::plan) resolve_plan(raw, arguments);
   if (arguments.verb == Verb::inspect) resolve_inspect(verb, raw, arguments);
+  if (arguments.verb == Verb::journal) resolve_journal(arguments);
   return {std::move(arguments), ""};
 }
 

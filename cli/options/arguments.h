@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "compare/frame_comparison.h"
+#include "edit/draft/draft_moves.h"
+#include "edit/draft/draft_rig.h"
 #include "edit/draft/journal_draft.h"
 #include "frame/image.h"
 #include "report/report.h"
@@ -25,12 +27,18 @@ enum class Verb : std::uint8_t {
   journal,
   blame,
   plan,
-  completions
+  completions,
+  schema,
+  export_scene,
+  watch,
+  report,
+  sheet,
+  complete  // what the scripts of `completions` ask; not in --help
 };
 enum class ProgressStyle : std::uint8_t { automatic, plain, json, openjd, none };
 /// What a replay writes beside frames.
 enum class ReportKind : std::uint8_t { none, json, html };
-enum class JournalSource : std::uint8_t { diff, variants, animation, wedge };
+enum class JournalSource : std::uint8_t { diff, variants, animation, wedge, turntable, aim, rig };
 
 struct ViewArguments {
   std::string camera;  // NAME | auto | EYE:TARGET:FOV; "": the scene's own
@@ -55,6 +63,12 @@ struct NamedStructures {
   std::optional<double> color_trees_percent;
 };
 
+/// How a scene file is watched.
+struct WatchOptions {
+  double interval_seconds = 0.5;
+  std::optional<std::uint32_t> most_exports;  // until it ends; none: a signal ends it
+};
+
 struct Arguments {
   Verb verb = Verb::render;
   std::vector<std::string> inputs;  // positional, in order
@@ -68,37 +82,48 @@ struct Arguments {
   bool quiet = false, json = false;
   ImportRules import;
   bool overlays = false;  // images of the regions found
+  bool relight = false;   // replay: layers of light for the page
   ProgressStyle progress = ProgressStyle::automatic;
   bool log_json = false;
   bool overwrite = false;  // replace another run or cache, or a single foreign file, that is in the way
   std::string trace;       // file, or ""
 
-  std::string journal;                // render; blame: see `cache`
-  std::optional<std::uint32_t> step;  // render
+  std::string journal;                // render, export; blame: see `cache`
+  std::optional<std::uint32_t> step;  // render, export
   bool float_frames = false;          // render, replay
   bool layers = false;                // render, replay: --aovs
   double exposure = 0;                // render, replay, compare: stops, of previews
   std::optional<double> verify_percent;
   bool baseline = false;                  // replay
   bool strict = false;                    // replay: no cache with damage, even such as can be made good
-  std::optional<StepRange> steps;         // replay
+  std::optional<StepRange> steps;         // replay, sheet
   bool fresh = false;                     // replay: no frame of an earlier run is kept
   ReportKind report = ReportKind::html;   // replay
-  std::string cache;                      // blame: folder, or "": where the run says; the same for `journal`
+  std::string cache;                      // blame: folder, or "": where the run says; the same for `journal`; watch
+  WatchOptions watch;
   std::string spill;                      // replay: folder of the spill file; "": the run's
   std::string access_log;                 // replay: file, or ""
   bool print_look = false;                // inspect
+  bool lists_paths = false, lists_cameras = false;  // inspect
+  std::string paths_filter;                         // of lists_paths; "": all
   std::vector<std::string> view_options;  // inspect: those of VIEW that were given, as "--camera"
-  std::string scene;                      // inspect, replay
+  std::string scene;                      // inspect, replay, schema
 
   Thresholds thresholds;                               // compare
   DisplayWhite white;                                  // compare: --peak
   bool exact_only = false;                             // compare: no PSNR, SSIM, FLIP
   std::string json_file;                               // compare, plan: --json=FILE, or ""
   std::string html;                                    // compare: file, or ""
+  bool single_file = false;                            // report: one page that holds everything
+  std::uint32_t scale = 1;                             // report: pixels at 1/scale
+  std::uint32_t columns = 0, sheet_width = 320;        // sheet: pictures in a row, 0: as suits; pixels of a picture
+  std::optional<double> own_exposure;                  // sheet: stops, where they are given
   JournalSource journal_source = JournalSource::diff;  // journal; the rest: of an animation
   SampleTimes sample_times;
   std::string animation;  // name or number; "": the first, with a warning if there are several
+  TurntableOptions turntable;
+  AimOptions aim;
+  RigOptions rig;
 };
 
 /// The arguments, or what to print instead (--help, --version). Throws UsageError.
@@ -113,18 +138,5 @@ struct ParsedCommandLine {
 /// What the command line does not say of structures, or says of those that the integrator has none of, becomes that of
 /// `others`.
 void take_structures(const StructureOptions& others, Integrator integrator, Arguments& arguments);
-
-/// The command line as completions need it.
-struct OptionHelp {
-  std::vector<std::string> names;  // "-o", "--output"
-  std::string help;                // one sentence
-  bool takes_value = false;
-  std::vector<std::string> choices;  // of the value, if there are few
-};
-struct VerbHelp {
-  std::string name, help;
-  std::vector<OptionHelp> options;
-};
-[[nodiscard]] std::vector<VerbHelp> command_line_help();
 
 }  // namespace relook

@@ -29,4 +29,10 @@ struct NamedInput {
 /// Whether `render` is to write a preview (.png), not a frame (.exr). Throws UsageError for any other suffix.
 [[nodiscard]] bool is_preview_name(const std::filesystem::path& output);
 
+/// The journal that `watch` keeps beside a run: RUN.json.
+[[nodiscard]] std::filesystem::path journal_beside(const std::filesystem::path& run);
+
+/// Whether `export` is to write a .glb, not a .gltf. Throws UsageError for any other suffix.
+[[nodiscard]] bool is_binary_scene_name(const std::filesystem::path& output);
+
 }  // namespace relook

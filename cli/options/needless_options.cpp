@@ -80,6 +80,10 @@ std::vector<Condition> conditions_of(const Arguments& arguments) {
     case Verb::replay: {
       return {{"--baseline", arguments.report == ReportKind::none, "it is for the report, which --report none omits"}};
     }
+    case Verb::report:
+      return {{"--scale", !arguments.single_file, "it is for --single-file"}};
+    case Verb::sheet:
+      return {{"--exposure", !is_preview_name(arguments.output), "an .exr keeps its light; it is for .png"}};
     case Verb::compare: {
       constexpr const char* kExact = "not with --exact, which works out no PSNR, SSIM and FLIP";
       const bool has_page = !arguments.html.empty() || !arguments.output.empty();
@@ -88,6 +92,8 @@ std::vector<Condition> conditions_of(const Arguments& arguments) {
               {"--failflip", arguments.exact_only, kExact},
               {"--warnflip", arguments.exact_only, kExact}};
     }
+    case Verb::schema:
+      return {{"--scene", arguments.inputs[0] == "report", "report.json is of no scene"}};
     default:
       return conditions;
   }

@@ -92,8 +92,8 @@ void check_file(const NamedOutput& output, bool overwrites) {
 
 /// Whether a path has one of the names that a run has for itself in its folder.
 bool is_reserved(const std::filesystem::path& path, const std::filesystem::path& folder) {
-  constexpr std::array<std::string_view, 7> kNames{kReportName, "report.html", kProgressName, "frames",
-                                                   "previews",  "overlays",    "pixels"};
+  constexpr std::array<std::string_view, 9> kNames{kReportName, "report.html", "index.html", kProgressName, "frames",
+                                                   "previews",  "overlays",    "relight",    "pixels"};
   const std::string first = resolved(path).lexically_relative(resolved(folder)).begin()->string();
   return std::ranges::find(kNames, first) != kNames.end();
 }

@@ -137,7 +137,7 @@ void add_system(Reach& reach) {
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored).parent_path();
   for (const fs::path& folder : {program, program.parent_path() / "lib" / "relook"}) {
     readable.push_back(folder);
-    for (const char* module : {"librelook_images.so", "librelook_meshes.so", "librelook_views.so"})
+    for (const char* module : {"librelook_images.so", "librelook_meshes.so", "librelook_views.so", "librelook_text.so"})
       readable.push_back(folder / module);  // links
   }
 }
@@ -164,6 +164,14 @@ Reach reach_of(const Arguments& arguments) {
       add_output_beside(output.path, reach);
     add_owners(output.path, reach.readable);
   }
+  if (arguments.verb == Verb::watch) {
+    add_output_beside(arguments.cache, reach);
+    add_output_beside(arguments.output, reach);  // its folder has the journal and the files of it
+  }
+  if (arguments.verb == Verb::export_scene)
+    reach.readable.push_back(existing_folder(full_path(arguments.output).parent_path()));
+  if (arguments.verb == Verb::report && arguments.output.empty())  // their pages are made anew
+    for (const std::string& run : arguments.inputs) add_output_folder(run, reach);
   if (!arguments.spill.empty()) reach.writable.emplace_back(arguments.spill);
   for (Paths* paths : {&reach.readable, &reach.writable}) {
     std::ranges::sort(*paths);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "options/shared_options.h"
 #include "region/quadtree.h"
 
 namespace relook {
@@ -10,50 +11,13 @@ namespace {
 
 constexpr int kMostCompared = 26;  // named A to Z
 
-void add_common(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
-  verb.add_option("--threads", arguments.threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
-  verb.add_flag("--quiet", arguments.quiet, "Print nothing but errors");
-  if (verb.get_name() == "compare" || verb.get_name() == "plan")
-    verb.add_flag("--json{-}", raw.json, "Print results as one JSON object; =FILE writes it there");
-  else
-    verb.add_flag("--json", arguments.json, "Print results as one JSON object");
-  verb.add_option("--progress", raw.progress, "auto, plain, json, openjd or none")
-      ->type_name("{auto,plain,json,openjd,none}");
-  verb.add_flag("--log-json", arguments.log_json, "Warnings, errors and progress on stderr as one JSON object a line");
-  verb.add_flag("--overwrite", arguments.overwrite,
-                "Replace another run or cache, or another file, that is where the output goes; never an input");
-  verb.add_option("--import-memory", raw.import_memory,
-                  "Most memory that scenes' and caches' images and geometry may unpack to, like 4G; 2G");
-  verb.add_option("--trace", arguments.trace, "File to write: what took how long, for Perfetto (Chrome trace events)");
-}
-
-/// Adds --root and --strict-gltf, for verbs that read scenes or journals.
-void add_import_rules(CLI::App& verb, Arguments& arguments) {
-  verb.add_option("--root", arguments.import.roots,
-                  "Folder whose files scenes and journals may name, like a library of textures; may be repeated")
-      ->check(CLI::ExistingDirectory)
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  verb.add_flag(
-      "--strict-gltf", arguments.import.is_strict,
-      "Refuse what is against the glTF specification, also where it has one plain meaning or nothing uses it");
-}
-
-CLI::Option* add_look_patch(CLI::App& verb, Arguments& arguments,
-                            const char* help = "JSON Patch (RFC 6902) applied to the look document first") {
-  return verb.add_option("--look", arguments.view.look_patch, help);
-}
-
-CLI::Option* add_lights(CLI::App& verb, RawTexts& raw, const char* help = "auto: add a key, a fill and a rim light") {
-  return verb.add_option("--lights", raw.lights, help)->check(CLI::IsMember({"auto"}));
-}
-
 void add_integrator(CLI::App& verb, RawTexts& raw, const char* help) {
   verb.add_option("--integrator", raw.integrator, help)
       ->check(CLI::IsMember(std::vector<std::string>{kIntegratorWords.begin(), kIntegratorWords.end()}));
 }
 
-/// Adds the VIEW options but --look, and returns them.
+}  // namespace
+
 std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   ViewArguments& view = arguments.view;
   const auto before = static_cast<std::ptrdiff_t>(verb.get_options().size());
@@ -78,6 +42,8 @@ std::vector<const CLI::Option*> add_view(CLI::App& verb, Arguments& arguments, R
   const std::vector<CLI::Option*> options = verb.get_options();
   return {options.begin() + before, options.end()};
 }
+
+namespace {
 
 void add_structures(CLI::App& verb, Arguments& arguments, RawTexts& raw) {
   NamedStructures& named = arguments.named;
@@ -107,19 +73,15 @@ void add_exposure(CLI::App& verb, Arguments& arguments) {
       ->type_name("EV");
 }
 
+}  // namespace
+
 void add_frame_options(CLI::App& verb, Arguments& arguments) {
   add_exposure(verb, arguments);
   verb.add_flag("--float", arguments.float_frames, "Write 32-bit float frames instead of half");
   verb.add_flag("--aovs", arguments.layers, "Write layers for compositing into the frames, too");
 }
 
-CLI::Option* add_output(CLI::App& verb, Arguments& arguments, const char* help) {
-  return verb.add_option("-o,--output", arguments.output, help);
-}
-
-void add_inputs(CLI::App& verb, Arguments& arguments, const char* name, const char* help, int least, int most) {
-  verb.add_option(name, arguments.inputs, help)->required()->expected(least, most);
-}
+namespace {
 
 void add_compare(CLI::App& app, Arguments& arguments) {
   CLI::App& compare = *app.add_subcommand("compare", "Compare frames, or runs, with the first of them");
@@ -141,34 +103,6 @@ void add_compare(CLI::App& app, Arguments& arguments) {
   add("--warnflip", limits.warn_flip, "As --failflip");
 }
 
-void add_journal(CLI::App& app, Arguments& arguments, RawTexts& raw) {
-  CLI::App& journal = *app.add_subcommand("journal", "Write a journal from what a scene contains");
-  journal.require_subcommand(1);
-  CLI::App& diff = *journal.add_subcommand("diff", "The step between two exports of a scene");
-  CLI::App& variants = *journal.add_subcommand("variants", "A step for each of the scene's material variants");
-  CLI::App& animation = *journal.add_subcommand("animation", "A frame for each sample of an animation of the scene");
-  CLI::App& wedge = *journal.add_subcommand("wedge", "A frame for each value of one parameter");
-  add_inputs(diff, arguments, "A B", "glTF scene, and the same edited", 2, 2);
-  add_inputs(variants, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
-  add_inputs(animation, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
-  add_inputs(wedge, arguments, "SCENE POINTER VALUES",
-             "Scene, a parameter's path in its look document, values (JSON or names) or ranges A..B:N", 3, 10000);
-  SampleTimes& times = arguments.sample_times;
-  animation.add_option("--fps", times.frames_per_second, "Frames a second; 24")->check(CLI::Range(1e-3, 1e4));
-  animation.add_option("--from", times.from, "First time in seconds; the first keyframe's")
-      ->check(CLI::Range(0.0, 1e6));
-  animation.add_option("--to", times.to, "Last time in seconds; the last keyframe's")->check(CLI::Range(0.0, 1e6));
-  animation.add_option("--animation", arguments.animation, "Name or number of the animation; the first");
-  for (CLI::App* source : journal.get_subcommands(nullptr)) {
-    add_output(*source, arguments, "Journal to write")->required();
-    source->add_option("--camera", arguments.view.camera, "Camera that the journal is for, which it cannot move");
-    add_look_patch(*source, arguments);
-    add_lights(*source, raw);
-    add_import_rules(*source, arguments);
-    add_common(*source, arguments, raw);
-  }
-}
-
 void add_render(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   CLI::App& render = *app.add_subcommand("render", "Render a scene, edited by a journal perhaps");
   add_inputs(render, arguments, "SCENE", "glTF scene (.gltf or .glb)", 1, 1);
@@ -178,6 +112,9 @@ void add_render(CLI::App& app, Arguments& arguments, RawTexts& raw) {
       ->check(CLI::Range(0, 1000000))
       ->needs("--journal");
   add_view(render, arguments, raw);
+  render.get_option("--camera")
+      ->description(
+          "NAME, auto, EYE:TARGET:FOV as x,y,z:x,y,z:degrees, or all: a labelled sheet of all cameras of the scene");
   add_look_patch(render, arguments);
   add_frame_options(render, arguments);
 }
@@ -202,6 +139,8 @@ void add_replay(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   replay.add_flag("--verify{100}", raw.verify, "Compare with a full render after each step; =PERCENT of the tiles");
   replay.add_flag("--baseline", arguments.baseline, "Measure one full render for the report");
   replay.add_flag("--overlays", arguments.overlays, "Write images of the regions that each step found, on its frame");
+  replay.add_flag("--relight", arguments.relight,
+                  "Write each frame's layers of light, with which report.html lights it otherwise; for path");
   replay.add_flag("--strict", arguments.strict,
                   "Refuse a cache with any damage, instead of tracing again what is damaged or missing");
   replay.add_option("--steps", raw.steps, "Frames of these steps only, like 3, 2-5 or 4-, after the edits before them");
@@ -238,6 +177,16 @@ void add_inspect(CLI::App& app, Arguments& arguments, RawTexts& raw) {
                   "Print the look document of a scene or cache; with a JSON Patch: patched by it")
       ->expected(0, 1);
   inspect.add_option("--scene", arguments.scene, "Scene or cache that a journal edits: print the class of each step");
+  CLI::Option* const paths =
+      inspect
+          .add_option("--paths", arguments.paths_filter,
+                      "List the values of a scene or cache that can be edited: pointer, value, range, class, unit; "
+                      "FILTER is a part of the pointer, or a pattern with * and ?")
+          ->expected(0, 1)
+          ->type_name("FILTER");
+  inspect
+      .add_flag("--cameras", arguments.lists_cameras, "List the cameras: name, eye, direction, field of view, aspect")
+      ->excludes(paths);
   raw.inspection_view = add_view(inspect, arguments, raw);
 }
 
@@ -251,6 +200,30 @@ void add_blame(CLI::App& app, Arguments& arguments) {
   add_inputs(blame, arguments, "RUN PIXEL", "Run folder, and a pixel as X,Y: 0,0 is the upper left one", 2, 2);
   blame.add_option("--cache", arguments.cache, "Where the run's cache is now");
   blame.add_option("--journal", arguments.journal, "Where the run's journal is now");
+}
+
+void add_report(CLI::App& app, Arguments& arguments) {
+  constexpr int kMostRuns = 10000;
+  CLI::App& report = *app.add_subcommand("report", "Make pages of runs: their own anew, an index, or one to send");
+  add_inputs(report, arguments, "RUN", "Run folders, or folders of several journals' runs", 1, kMostRuns);
+  add_output(report, arguments, "Page to write: an index of the runs, or, with --single-file, all of them");
+  report.add_flag("--single-file", arguments.single_file, "Write all that the page shows into one file, to send");
+  report.add_option("--scale", arguments.scale, "Of --single-file: pixels at 1/N of the frames' size; 1")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N");
+}
+
+void add_sheet(CLI::App& app, Arguments& arguments, RawTexts& raw) {
+  CLI::App& sheet = *app.add_subcommand("sheet", "Write a run's frames as one labelled picture, a contact sheet");
+  add_inputs(sheet, arguments, "RUN", "Run folder", 1, 1);
+  add_output(sheet, arguments, "Picture to write: .png as previews show frames, or .exr, linear")->required();
+  sheet.add_option("--columns", arguments.columns, "Pictures in a row; as suits a sheet about 16:10")
+      ->check(CLI::Range(1, 1000));
+  sheet.add_option("--width", arguments.sheet_width, "Most pixels across of a picture; 320")
+      ->check(CLI::Range(16, 16384));
+  sheet.add_option("--steps", raw.steps, "Frames of these steps only, like 3, 2-5 or 4-");
+  sheet.add_option("--exposure", arguments.own_exposure, "Show 2^EV times the light; as the run's previews")
+      ->type_name("EV");
 }
 
 void add_completions(CLI::App& app, Arguments& arguments) {
@@ -277,8 +250,13 @@ void add_verbs(CLI::App& app, Arguments& arguments, RawTexts& raw) {
   add_journal(app, arguments, raw);
   add_plan(app, arguments);
   add_blame(app, arguments);
+  add_export(app, arguments, raw);
+  add_watch(app, arguments, raw);
+  add_report(app, arguments);
+  add_sheet(app, arguments, raw);
   add_completions(app, arguments);
-  for (const char* verb : {"render", "preprocess", "replay", "inspect", "plan", "blame"})
+  add_schema(app, arguments, raw);
+  for (const char* verb : {"render", "preprocess", "replay", "inspect", "plan", "blame", "schema", "export", "watch"})
     add_import_rules(*app.get_subcommand(verb), arguments);
   for (CLI::App* verb : app.get_subcommands(nullptr)) add_common(*verb, arguments, raw);
 }

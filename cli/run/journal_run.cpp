@@ -1,5 +1,7 @@
 #include "run/journal_run.h"
 
+#include <sys/resource.h>
+
 #include <cstdio>
 #include <new>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "image/render.h"
 #include "input/load_cache.h"
 #include "replay/memory_needs.h"
+#include "report/journal_words.h"
 #include "report/places.h"
 #include "run/step_text.h"
 
@@ -24,6 +27,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 /// What the entry of a frame that another command has made says of the frame itself.
 void take_over(const Json& kept, StepReport& entry) {
   entry.has_overlays = kept.at("overlays").get<bool>();
+  entry.has_relight = kept.at("relight").get<bool>();
   entry.exposure = kept.at("exposure").get<double>();
   if (kept.at("verify_percent").is_number()) entry.verify_percent = kept.at("verify_percent").get<double>();
   if (const Json& verify = kept.at("verify"); verify.is_object())
@@ -32,6 +36,16 @@ void take_over(const Json& kept, StepReport& entry) {
   for (const auto& [name, stamp] : kept.at("files").items())
     entry.files[name] = {stamp.at("hash").get<std::string>(), stamp.at("bytes").get<std::uint64_t>(),
                          stamp.at("modified").get<std::int64_t>()};
+}
+
+/// Of all threads of this process so far.
+double process_cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 RegionOptions region_options(const StructureOptions& structures) {
@@ -46,6 +60,10 @@ RegionOptions region_options(const StructureOptions& structures) {
 
 }  // namespace
 
+WorkClock::WorkClock() : start_(std::chrono::steady_clock::now()), cpu_start_(process_cpu_seconds()) {}
+double WorkClock::seconds() const { return seconds_since(start_); }
+double WorkClock::cpu_seconds() const { return process_cpu_seconds() - cpu_start_; }
+
 JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan,
                        OpenedCache opened, std::unique_ptr<Residency> residency, const CacheFacts& cache,
                        const PreviewStyle& previews)
@@ -58,23 +76,45 @@ JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journ
                arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, previews, arguments.report}),
       tunnels_(opened.tunnels),
       replayer_(std::move(*opened.state), std::move(opened.image), region_options(arguments.structures),
-                std::move(residency), std::move(opened.tunnels)) {
+                std::move(residency), std::move(opened.tunnels)),
+      replay_(journal, replayer_) {
+  describe(cache, previews);
+}
+
+JournalRun::JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan,
+                       Replayer replayer, std::uint32_t made, const CacheFacts& cache, const PreviewStyle& previews)
+    : arguments_(arguments),
+      console_(console),
+      journal_(journal),
+      plan_(plan),
+      folder_(plan, journal,
+              {replayer.image().frame.width, replayer.image().frame.height,
+               arguments.float_frames ? PixelFormat::float32 : PixelFormat::half, previews, arguments.report}),
+      replayer_(std::move(replayer)),
+      made_(made),
+      replay_(journal, replayer_) {
+  describe(cache, previews);
+}
+
+void JournalRun::describe(const CacheFacts& cache, const PreviewStyle& previews) {
   report_.scene = replayer_.state().document().file;
   report_.scene_hash = cache.scene_hash;
-  report_.cache_folder = arguments.inputs[0];
-  report_.journal = journal.file;
-  report_.journal_hash = journal.hash;
-  report_.source = plan.source();
-  report_.places = {{"cache", place_json(plan.folder(), arguments.inputs[0])},
-                    {"journal", place_json(plan.folder(), journal.path)}};
+  report_.cache_folder = arguments_.inputs[0];
+  report_.journal = journal_.file;
+  report_.journal_hash = journal_.hash;
+  report_.said = journal_.said;
+  report_.source = plan_.source();
+  report_.places = {{"cache", place_json(plan_.folder(), arguments_.inputs[0])},
+                    {"journal", place_json(plan_.folder(), journal_.path)}};
   report_.camera = replayer_.state().scene().camera;
   report_.view = replayer_.image().view;
-  report_.structures = arguments.structures;
-  report_.float_frames = arguments.float_frames;
-  report_.layers = arguments.layers;
+  report_.structures = arguments_.structures;
+  report_.float_frames = arguments_.float_frames;
+  report_.layers = arguments_.layers;
+  report_.relight = arguments_.relight;
   report_.exposure = previews.exposure;
-  report_.verify_percent = arguments.verify_percent;
-  report_.step_range = arguments.steps;
+  report_.verify_percent = arguments_.verify_percent;
+  report_.step_range = arguments_.steps;
   report_.threads = thread_count();
   report_.cache = cache.sizes;
   report_.noise = cache.noise;
@@ -112,7 +152,10 @@ void JournalRun::leave_off() {
 }
 
 void JournalRun::run_steps() {
-  if (arguments_.baseline && !arguments_.verify_percent) full_render();
+  if (arguments_.baseline && !arguments_.verify_percent) {
+    (void)full_render(baseline_.emplace());
+    baseline_segments_ = replayer_.segments();
+  }
   for (const JournalEvent& event : JournalWalk(journal_, 0, plan_.last_step())) {
     const bool is_asked_for = event.place.step >= plan_.first_step();
     switch (event.kind) {
@@ -121,8 +164,8 @@ void JournalRun::run_steps() {
       case EventKind::drag:
         if (is_asked_for)
           run_frame(event);
-        else if (event.kind != EventKind::base)
-          pending_.add(event.edit());
+        else if (event.place.step > made_)
+          replay_.skip(event);
         ++frame_number_;
         break;
       case EventKind::release:
@@ -147,6 +190,8 @@ StepReport JournalRun::new_entry(const JournalEvent& event) const {
   entry.place = event.place;
   entry.is_drag = event.step != nullptr && event.step->form() == StepForm::drag;
   entry.name = step_name(journal_, event.place.step);
+  const bool is_frame = event.has_frame();
+  entry.words = entry_words(journal_, event.place.step, is_frame ? std::optional(event.frame) : std::nullopt);
   entry.edits_hash = plan_.hashes().at(event.place.step, event.frame);
   entry.source_hash = plan_.source_hash();
   entry.verify_percent = arguments_.verify_percent;
@@ -158,45 +203,25 @@ StepReport JournalRun::new_entry(const JournalEvent& event) const {
 void JournalRun::pass_kept(const JournalEvent& event) {
   const StepReport entry = new_entry(event);
   console_.log_line(label_of(entry) + " \"" + printable(entry.name) + "\": kept");
-  if (event.kind == EventKind::base) return;
-  Edit edit = event.edit();
+  if (event.place.step <= made_) return;  // the frame before any edit is of step 0
   follows_last_ = false;
-  if (is_dragging_)
-    (void)replayer_.drag(edit, journal_.file, journal_.path.parent_path());
-  else
-    pending_.add(std::move(edit));
+  replay_.skip(event);
 }
 
 /// Goes to where the scene is before the next frame.
 void JournalRun::catch_up() {
-  if (pending_.empty()) return;
+  if (replay_.is_up_to_date()) return;
   const auto start = std::chrono::steady_clock::now();
   const TraceScope span = console_.span("edits before");
-  for (const Edit& edit : pending_.take()) {
-    console_.check_interrupt();
-    (void)replayer_.step(edit, journal_.file, journal_.path.parent_path());
-  }
+  replay_.catch_up();
   follows_last_ = false;
   report_.resume_seconds += seconds_since(start);
 }
 
 /// Does what leads to a frame, or to the end of a step.
 StepResult JournalRun::follow(const JournalEvent& event) {
-  const std::filesystem::path folder = journal_.path.parent_path();
-  switch (event.kind) {
-    case EventKind::base:
-      break;
-    case EventKind::edit:
-      return replayer_.step(event.edit(), journal_.file, folder);
-    case EventKind::drag:
-      is_dragging_ = true;
-      return replayer_.drag(event.edit(), journal_.file, folder);
-    case EventKind::release:
-      return std::exchange(is_dragging_, false) ? replayer_.release() : StepResult();
-    case EventKind::wedge_end:
-      return {};
-  }
-  StepResult result;
+  StepResult result = replay_.follow(event);
+  if (event.kind != EventKind::base) return result;
   const Frame& base = replayer_.image().frame;
   result.counters.samples_total = std::uint64_t{base.width} * base.height * report_.view.samples;
   result.counters.rebuilt = rebuilt_;
@@ -209,10 +234,10 @@ void JournalRun::make_frame(const JournalEvent& event) {
   console_.check_interrupt();
   show_part(entry);
   StepResult result;
-  auto start = std::chrono::steady_clock::now();
+  WorkClock clock;
   try {
     catch_up();
-    start = std::chrono::steady_clock::now();
+    clock = WorkClock();
     result = follow(event);
   } catch (const ResourceError&) {  // with more memory the run goes on from here
     leave_off();
@@ -225,7 +250,7 @@ void JournalRun::make_frame(const JournalEvent& event) {
   entry.reasons = result.classification.reasons;
   entry.counters = result.counters;
   entry.seconds = result.seconds;
-  finish(std::move(entry), result, start);
+  finish(std::move(entry), result, clock);
 }
 
 /// The entry of a drag or wedge as a whole, which names the last of its frames; a dragged selection goes back into the
@@ -239,6 +264,8 @@ void JournalRun::end_step(const JournalEvent& event) {
   step_so_far_.reset();
   if (is_last_kept) take_over(plan_.kept_entry(step, last), entry);
   entry.is_whole_step = true;
+  entry.words = entry_words(journal_, step, std::nullopt);
+  entry.full_render.reset();  // of its frames
   const StepResult result = follow(event);
   entry.counters = result.counters;
   entry.seconds = result.seconds;
@@ -279,21 +306,25 @@ void JournalRun::note_tunnel_damage() {
   console_.warn(damage);
 }
 
-void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start) {
+void JournalRun::finish(StepReport entry, const StepResult& result, const WorkClock& clock) {
   note_tunnel_damage();
   FrameMeta meta;
   meta.scene_hash = report_.scene_hash;
   meta.edits_hash = entry.edits_hash;
+  add_journal_words(meta, journal_, entry.place.step, entry.place.number ? *entry.place.number - 1 : 0);
   const bool is_numbered = entry.place.number.has_value();
-  folder_.write_frame(entry, replayer_, {result.changed_pixels, follows_last_}, std::move(meta), arguments_.layers);
+  folder_.write_frame(entry, replayer_, {result.changed_pixels, follows_last_, replay_.changed_in_step()},
+                      std::move(meta), {arguments_.layers, arguments_.relight});
   follows_last_ = true;
   warn_of_clipping(entry);
   if (arguments_.overlays) folder_.write_overlays(entry, replayer_, result);
-  entry.seconds.total = seconds_since(start);
+  entry.seconds.total = clock.seconds();
+  entry.seconds.cpu = clock.cpu_seconds();
   entry.resident = replayer_.resident();
   entry.peak_rss_bytes = peak_rss_bytes();
+  entry.full_render = foreseen_full_render();
   if (arguments_.verify_percent) verify(entry);
-  trace_step(entry, start, console_.trace());
+  trace_step(entry, clock.start(), console_.trace());
   console_.log_line(line_of(entry));
   if (is_numbered) {
     step_class_ = combined(step_class_, entry.change);
@@ -302,7 +333,8 @@ void JournalRun::finish(StepReport entry, const StepResult& result, std::chrono:
   folder_.note(std::move(entry));
 }
 
-Frame JournalRun::full_render() {
+/// Renders the scene as it is now, as `relook render` does; `cost`: what that took, without writing.
+Frame JournalRun::full_render(FullRender& cost) {
   Residency& residency = replayer_.residency();
   const Residency::Aside aside = residency.begin_aside();
   const SceneState& state = replayer_.state();
@@ -314,15 +346,27 @@ Frame JournalRun::full_render() {
     shown(share);
   };
   const MemoryMonitor monitor = [&](std::int64_t bytes) { residency.claim(bytes); };
+  const WorkClock clock;
   Frame frame = render(scene, report_.view, stats, progress, residency.is_limited() ? monitor : MemoryMonitor());
+  cost = {stats.build_seconds + stats.render_seconds, clock.cpu_seconds(),
+          stats.counters.ray_updates + stats.counters.shadow_updates, true};
   console_.end_stage();
-  if (!report_.full_render_seconds) report_.full_render_seconds = stats.build_seconds + stats.render_seconds;
+  if (!report_.full_render_seconds) report_.full_render_seconds = cost.seconds;
   return frame;
 }
 
+/// What a full render of the present frame's scene would take, from the one of --baseline: by the segments of their ray
+/// trees, which a replay knows without tracing.
+std::optional<FullRender> JournalRun::foreseen_full_render() const {
+  if (!baseline_ || baseline_segments_ == 0) return std::nullopt;
+  const double ratio = static_cast<double>(replayer_.segments()) / static_cast<double>(baseline_segments_);
+  const auto rays = static_cast<std::uint64_t>(static_cast<double>(baseline_->rays) * ratio);
+  return FullRender{baseline_->seconds * ratio, baseline_->cpu_seconds * ratio, rays, false};
+}
+
 void JournalRun::verify(StepReport& entry) {
-  const FrameDifference difference =
-      compare_frames(full_render(), replayer_.image().frame, *arguments_.verify_percent, frame_number_);
+  const FrameDifference difference = compare_frames(full_render(entry.full_render.emplace()), replayer_.image().frame,
+                                                    *arguments_.verify_percent, frame_number_);
   entry.verify = VerifyResult{difference.pixels_compared, difference.pixels_different};
   pixels_compared_ += difference.pixels_compared;
   pixels_different_ += difference.pixels_different;

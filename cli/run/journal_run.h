@@ -12,7 +12,7 @@
 #include "edit/journal_walk.h"
 #include "image/cached_image.h"
 #include "options/arguments.h"
-#include "replay/replay.h"
+#include "replay/journal_replay.h"
 #include "report/report.h"
 #include "run/run_folder.h"
 #include "terminal/console.h"
@@ -28,6 +28,19 @@ struct CacheFacts {
   Moves rebuilt;  // what was damaged
 };
 
+/// Times a piece of work: by the clock, and what all threads of the process did.
+class WorkClock {
+ public:
+  WorkClock();
+  [[nodiscard]] std::chrono::steady_clock::time_point start() const { return start_; }
+  [[nodiscard]] double seconds() const;
+  [[nodiscard]] double cpu_seconds() const;
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  double cpu_start_;
+};
+
 /// One journal on its way into one run folder.
 class JournalRun {
  public:
@@ -35,6 +48,11 @@ class JournalRun {
   JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan, OpenedCache opened,
              std::unique_ptr<Residency> residency, const CacheFacts& cache,
              const PreviewStyle& previews);
+
+  /// Goes on with the replayer of an earlier run of the same cache and the first steps of the same journal, `made` of
+  /// them, as take_replayer() hands it over after reach_end().
+  JournalRun(const Arguments& arguments, Console& console, const Journal& journal, RunPlan& plan, Replayer replayer,
+             std::uint32_t made, const CacheFacts& cache, const PreviewStyle& previews);
 
   /// Builds the colour trees of these sets of parameters; no others will be kept.
   void choose_parameters(const std::vector<ParameterSet>& sets) {
@@ -45,10 +63,13 @@ class JournalRun {
   /// memory ends it; other errors leave none. Returns the number of pixels that --verify found different, in frames
   /// that were kept, too.
   std::uint64_t run(std::size_t place, std::size_t runs);
+  /// Makes the edits of frames at the end that were there already. To be called after run().
+  void reach_end() { catch_up(); }
   /// Hands over the replayer. To be called after run().
   [[nodiscard]] Replayer take_replayer() { return std::move(replayer_); }
 
  private:
+  void describe(const CacheFacts& cache, const PreviewStyle& previews);
   void run_steps();
   void make_room_for_page();
   void leave_off();
@@ -60,9 +81,10 @@ class JournalRun {
   void end_step(const JournalEvent& event);
   [[nodiscard]] StepReport new_entry(const JournalEvent& event) const;
   void show_part(const StepReport& entry);
-  void finish(StepReport entry, const StepResult& result, std::chrono::steady_clock::time_point start);
+  void finish(StepReport entry, const StepResult& result, const WorkClock& clock);
   void verify(StepReport& entry);
-  Frame full_render();
+  [[nodiscard]] Frame full_render(FullRender& cost);
+  [[nodiscard]] std::optional<FullRender> foreseen_full_render() const;
   void print_summary();
   void note_tunnel_damage();
   void warn_of_clipping(const StepReport& entry);
@@ -78,8 +100,8 @@ class JournalRun {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   std::uint64_t pixels_different_ = 0, pixels_compared_ = 0;
   Moves rebuilt_;                          // as the cache was read
-  MergedEdits pending_;                    // of frames that are there already: to be made before the next that is not
-  bool is_dragging_ = false;               // the selection of the present step is out of the ray trees
+  std::uint32_t made_ = 0;                 // so many steps are in the replayer's scene from the start
+  JournalReplay replay_;                   // leads replayer_ from frame to frame
   bool follows_last_ = false;              // the frame to come follows the last one written: no edit lies between
   std::size_t frames_done_ = 0;            // of those asked for
   std::size_t frame_number_ = 0;           // of the journal, for the tiles that --verify takes
@@ -87,6 +109,8 @@ class JournalRun {
   ChangeClass step_class_ = ChangeClass::color;  // of its frames so far
   std::size_t clipped_frames_ = 0;               // that half cannot hold
   double runs_before_ = 0, runs_ = 1;            // of the command, for its progress
+  std::optional<FullRender> baseline_;           // of the scene before any step
+  std::uint64_t baseline_segments_ = 0;          // of its ray trees
 };
 
 }  // namespace relook

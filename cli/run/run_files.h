@@ -18,12 +18,17 @@ struct RunPart {
   std::string_view folder, suffix;
   OwnKind kind;
 };
-inline constexpr std::array<RunPart, 4> kRunParts{{{"frames", ".exr", OwnKind::frame},
+inline constexpr std::array<RunPart, 5> kRunParts{{{"frames", ".exr", OwnKind::frame},
                                                    {"previews", ".png", OwnKind::preview},
                                                    {"overlays", ".png", OwnKind::preview},
+                                                   {"relight", ".exr", OwnKind::frame},
                                                    {"pixels", ".js", OwnKind::page_data}}};
-inline constexpr std::array<std::pair<std::string_view, OwnKind>, 3> kRunFiles{
-    {{kReportName, OwnKind::report}, {"report.html", OwnKind::page}, {kProgressName, OwnKind::progress}}};
+/// Says to the page of a run that `watch` goes on with how many entries there are by now.
+inline constexpr std::string_view kLiveName = "relook_live.js";
+inline constexpr std::array<std::pair<std::string_view, OwnKind>, 4> kRunFiles{{{kReportName, OwnKind::report},
+                                                                                {"report.html", OwnKind::page},
+                                                                                {kLiveName, OwnKind::page_data},
+                                                                                {kProgressName, OwnKind::progress}}};
 
 /// Anything, a link to nothing, too.
 [[nodiscard]] bool is_there(const std::filesystem::path& path);
@@ -36,7 +41,7 @@ inline constexpr std::array<std::pair<std::string_view, OwnKind>, 3> kRunFiles{
 [[nodiscard]] std::string unfinished_name(const std::filesystem::path& path);
 /// "0003_01" of "0003_01.exr", "0003_01_groups.png".
 [[nodiscard]] std::string frame_stem(const std::string& name);
-/// Whether a name is one that frames, previews or overlays have: 0003, 0003_01, with a kind and a suffix.
+/// Whether a name is one that frames, their layers, previews or overlays have: 0003, 0003_01, with a kind and a suffix.
 [[nodiscard]] bool is_frame_stem(const std::string& name);
 [[nodiscard]] std::uint32_t step_of(const std::string& name);
 /// Throws IoError.

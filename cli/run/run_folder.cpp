@@ -16,6 +16,7 @@
 #include "image/layers/layered_frame.h"
 #include "image/overlay.h"
 #include "page/run_page.h"
+#include "report/journal_words.h"
 #include "report/report_file.h"
 
 namespace relook {
@@ -74,7 +75,7 @@ RunFolder::RunFolder(RunPlan& plan, const Journal& journal, Style style)
 RunFolder::~RunFolder() = default;
 
 void RunFolder::write_frame(StepReport& step, Replayer& replayer, const FrameChange& change, FrameMeta meta,
-                            bool has_layers) {
+                            Layers layers) {
   const auto start = std::chrono::steady_clock::now();
   finish_writing();
   const Image& image = replayer.image();
@@ -86,9 +87,9 @@ void RunFolder::write_frame(StepReport& step, Replayer& replayer, const FrameCha
     else
       encoder.update(frame, change.pixels);
   };
-  if (!has_layers) take(encoder_);
+  if (!layers.in_frame) take(encoder_);
   if (style_.format == PixelFormat::half)
-    clipped_pixels_ = has_layers ? relook::clipped_pixels(frame) : encoder_.clipped_pixels();
+    clipped_pixels_ = layers.in_frame ? relook::clipped_pixels(frame) : encoder_.clipped_pixels();
   take(preview_encoder_);
   preview_is_stale_ = preview_is_stale_ || takes_all || !change.pixels.empty();
   meta.step = step_label(step.place);
@@ -96,26 +97,32 @@ void RunFolder::write_frame(StepReport& step, Replayer& replayer, const FrameCha
   meta.exposure = exposure_text(step.exposure);
   step.frame = frame_name(step.place);
   step.preview = preview_name(step.place);
-  std::optional<Bytes> layered;
-  if (has_layers)
-    layered = encode_layered_exr(
-        {replayer.state().scene(), image.view, frame, change.pixels, style_.format, &image.light_sums,
-         &replayer.residency(), &replayer.sum_versions(), replayer.residency().is_limited() ? nullptr : &halves_},
+  Ready files;
+  const bool keeps_layers = !replayer.residency().is_limited();
+  if (layers.in_frame)
+    files.layered = encode_layered_exr(
+        {replayer.state().scene(), image.view, frame, change.in_step, style_.format, &image.light_sums,
+         &replayer.residency(), &replayer.sum_versions(), keeps_layers ? &halves_ : nullptr},
         meta);
+  if (layers.relight) {
+    if (!relight_encoder_) relight_encoder_.emplace(keeps_layers);
+    step.has_relight = true;
+    files.relight = relight_encoder_->exr(replayer.state(), image, replayer.sum_versions(), replayer.residency(), meta);
+  }
   // Not before: what has thrown until here is no reason to forget finished frames.
   std::vector<StepReport> ready = std::exchange(notes_, {});
   ++own_frames_;
   writing_ = std::async(std::launch::async,
-                        [this, step, meta = std::move(meta), ready = std::move(ready), layered = std::move(layered)] {
+                        [this, step, meta = std::move(meta), ready = std::move(ready), files = std::move(files)] {
                           const Uninterrupted until_written;  // a finished frame stays
                           for (const StepReport& entry : ready) progress_->append(step_json(entry));
-                          encode_and_write(step, meta, layered);
+                          encode_and_write(step, meta, files);
                         });
   step.seconds.write = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void RunFolder::encode_and_write(const StepReport& step, const FrameMeta& meta, const std::optional<Bytes>& layered) {
-  const Bytes bytes = layered ? *layered : encoder_.exr(meta);
+void RunFolder::encode_and_write(const StepReport& step, const FrameMeta& meta, const Ready& ready) {
+  const Bytes bytes = ready.layered ? *ready.layered : encoder_.exr(meta);
   write_file(path_ / step.frame, bytes);
   if (std::exchange(preview_is_stale_, false)) {
     preview_ = preview_encoder_.png();
@@ -125,6 +132,11 @@ void RunFolder::encode_and_write(const StepReport& step, const FrameMeta& meta, 
   last_files_ = {step.frame,
                  {{step.frame, stamp_of(path_ / step.frame, hash128(bytes))},
                   {step.preview, stamp_of(path_ / step.preview, preview_hash_)}}};
+  if (!ready.relight) return;
+  const std::string name = relight_name(step.place);
+  make_folders(path_ / std::filesystem::path(name).parent_path());
+  write_file(path_ / name, *ready.relight);
+  last_files_.second[name] = stamp_of(path_ / name, hash128(*ready.relight));
 }
 
 namespace {
@@ -239,7 +251,7 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
   for (const auto& [key, note] : notes) {
     Json entry = ledger.entry(note);
     entry["resumed"] = entry.at("command") != command_;
-    entry["name"] = step_name(journal_, key.first);
+    entry.update(entry_words(journal_, key.first, plan_.frame_of(key)));
     report_file_->add(entry);
   }
   report_file_->publish();
@@ -249,7 +261,7 @@ bool RunFolder::write_report_file(RunReport& report, bool interrupted) {
 void RunFolder::write_page(const RunReport& report, bool is_quick, const std::function<void()>& check) {
   plan_.remove_unfinished_page();
   const ReportEntries entries = report_file_->entries();
-  write_run_page({path_, report_head_json(report), entries, journal_, !is_quick, check});
+  write_run_page({path_, report_head_json(report), entries, journal_, !is_quick, check, style_.previews.view});
 }
 
 void RunFolder::write_report(RunReport& report, bool interrupted, const std::function<void()>& check) {

@@ -13,6 +13,7 @@
 #include "frame/frame_file.h"
 #include "frame/preview.h"
 #include "image/layers/half_light.h"
+#include "image/layers/relight_file.h"
 #include "replay/replay.h"
 #include "report/progress_file.h"
 #include "report/report.h"
@@ -32,8 +33,15 @@ class RunFolder {
   };
 
   struct FrameChange {
-    const ChangedPixels& pixels;  // by the frame's own edit
-    bool follows_last = false;    // no other edit lies between it and the last frame written
+    const ChangedPixels& pixels;   // since the last frame
+    bool follows_last = false;     // no other edit lies between it and the last frame written
+    const ChangedPixels& in_step;  // since where the step starts, or the frame before it in a drag or wedge
+  };
+
+  /// What is written beside R, G, B and A.
+  struct Layers {
+    bool in_frame = false;  // --aovs
+    bool relight = false;   // --relight
   };
 
   /// Creates the folder, locks the steps of `plan`, looks into the folder again and removes what is to be replaced.
@@ -44,8 +52,8 @@ class RunFolder {
   /// Writes the frame and preview of a step and sets its files, seconds.write and command. Only tiles of changed pixels
   /// are compressed again, and all of that happens while the next step runs: seconds.write is what this step waits for,
   /// and what goes wrong is thrown by the next call. `meta.step` and `meta.change_class` are taken from `step`.
-  /// `has_layers`: they are made here, which is part of seconds.write.
-  void write_frame(StepReport& step, Replayer& replayer, const FrameChange& change, FrameMeta meta, bool has_layers);
+  /// `layers`: they are made here, which is part of seconds.write.
+  void write_frame(StepReport& step, Replayer& replayer, const FrameChange& change, FrameMeta meta, Layers layers);
   /// The pixels of the frame last given to write_frame() that half cannot hold, layers aside; 0 where frames are
   /// float32.
   [[nodiscard]] std::uint64_t clipped_pixels() const { return clipped_pixels_; }
@@ -60,7 +68,11 @@ class RunFolder {
  private:
   void finish_writing();
   void append_notes();
-  void encode_and_write(const StepReport& step, const FrameMeta& meta, const std::optional<Bytes>& layered);
+  /// Files that are encoded when the next step begins.
+  struct Ready {
+    std::optional<Bytes> layered, relight;
+  };
+  void encode_and_write(const StepReport& step, const FrameMeta& meta, const Ready& ready);
   [[nodiscard]] std::vector<std::pair<LedgerKey, RunLedger::Note>> sound_notes(const RunLedger& ledger) const;
   [[nodiscard]] bool write_report_file(RunReport& report, bool interrupted);
   void write_page(const RunReport& report, bool is_quick, const std::function<void()>& check);
@@ -73,7 +85,8 @@ class RunFolder {
   std::string command_;  // tells the entries of this command from others
   FrameEncoder encoder_;
   PreviewEncoder preview_encoder_;
-  KeptHalves halves_;         // of frames with layers
+  KeptHalves halves_;  // of frames with layers
+  std::optional<RelightEncoder> relight_encoder_;
   bool has_written_ = false;  // the encoders have a frame
   bool preview_is_stale_ = true;
   Bytes preview_;  // of the last frame

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "cache/cache.h"
 #include "edit/journal_walk.h"
+#include "report/journal_words.h"
 #include "report/run_source.h"
 #include "run/run_files.h"
 
@@ -112,7 +113,8 @@ void RunPlan::require_known_files() const {
     const auto part = std::ranges::find(kRunParts, name, &RunPart::folder);
     std::error_code error;
     if (part == kRunParts.end() || !std::filesystem::is_directory(path, error)) {
-      if (unfinished_name(path).empty()) refuse(path);
+      const bool is_index = name == "index.html" && is_own_file(path, OwnKind::page);
+      if (unfinished_name(path).empty() && !is_index) refuse(path);
       continue;
     }
     for (const std::filesystem::path& file : entries_of(path))
@@ -121,9 +123,11 @@ void RunPlan::require_known_files() const {
   }
 }
 
-/// Whether an entry has the overlays, the exposure and the verification that this command asks for.
+/// Whether an entry has the overlays, the layers of light, the exposure and the verification that this command asks
+/// for.
 bool RunPlan::is_enough(const Json& entry) const {
   if (arguments_.overlays && !entry.at("overlays").get<bool>()) return false;
+  if (arguments_.relight && !entry.at("relight").get<bool>()) return false;
   if (entry.at("exposure").get<double>() != arguments_.exposure) return false;
   if (!arguments_.verify_percent) return true;
   const Json& verified = entry.at("verify_percent");
@@ -152,6 +156,14 @@ bool RunPlan::is_its_frame(const LedgerKey& key, const Json& entry) const {
   return meta && meta->scene_hash == source_.at("scene") && meta->edits_hash == entry.at("edits") &&
          meta->exposure == exposure_text(entry.at("exposure").get<double>()) &&
          meta->step == step_label(place_of_key(key)) && (!is_frame(key) || meta->change_class == entry.at("class"));
+}
+
+/// Whether the header of a frame has the name, the note and so on that the journal has now.
+bool RunPlan::says_what_the_journal_does(const LedgerKey& key, const Json& entry) const {
+  const std::optional<std::size_t> frame = frame_of(key);
+  if (!frame) return true;
+  const std::optional<FrameMeta> meta = own_frame_meta(folder_ / entry.at("frame").get_ref<const std::string&>());
+  return meta && has_journal_words(*meta, journal_, key.first, *frame);
 }
 
 bool RunPlan::is_sound(const LedgerKey& key, const Json& entry) {
@@ -201,7 +213,7 @@ void RunPlan::judge_notes() {
     const Json entry = ledger_->entry(note);
     Judgement& judgement = judgements[i];
     judgement.is_sound = is_sound(key, entry);
-    judgement.is_kept = judgement.is_sound && is_enough(entry);
+    judgement.is_kept = judgement.is_sound && is_enough(entry) && says_what_the_journal_does(key, entry);
     if (judgement.is_kept && entry.at("verify").is_object())
       judgement.pixels_different = entry.at("verify").at("pixels_different").get<std::uint64_t>();
   });
@@ -228,7 +240,7 @@ bool RunPlan::sums_up(std::uint32_t step, const Json& whole) const {
     const Json entry = kept_entry(step, frame);
     change = combined(change, change_class_of(entry.at("class").get_ref<const std::string&>()));
     const bool is_last = frame + 1 == frames;
-    for (const char* key : {"files", "verify", "verify_percent", "overlays", "exposure"})
+    for (const char* key : {"files", "verify", "verify_percent", "overlays", "relight", "exposure"})
       if (is_last && whole.at(key) != entry.at(key)) return false;
   }
   return whole.at("class") == change_class_name(change);
@@ -289,6 +301,7 @@ bool RunPlan::has_true_head(const Json& head) const {
 void RunPlan::require_free_names(const FramePlace& here) const {
   require_free(frame_name(here));
   require_free(preview_name(here));
+  if (arguments_.relight) require_free(relight_name(here));
   if (!arguments_.overlays) return;
   for (const char* kind : {"_dependent.png", "_touched.png", "_groups.png"})
     require_free("overlays/" + std::filesystem::path(frame_name(here)).stem().string() + kind);
@@ -314,6 +327,11 @@ bool RunPlan::is_of_journal(const LedgerKey& key, const RunLedger::Note& note) c
 bool RunPlan::is_frame(const LedgerKey& key) const {
   const auto& [step, number] = key;
   return number != kWholeStep || step > journal_.steps.size() || !is_numbered(journal_, step);
+}
+
+std::optional<std::size_t> RunPlan::frame_of(const LedgerKey& key) const {
+  if (!is_frame(key)) return std::nullopt;
+  return key.second == kWholeStep ? 0 : key.second - 1;
 }
 
 Json RunPlan::kept_entry(std::uint32_t step, std::size_t frame) const {

@@ -70,6 +70,8 @@ class RunPlan {
   [[nodiscard]] LedgerKey key_of(std::uint32_t step, std::size_t frame) const;
   /// Whether an entry is of this journal, and whether it has a frame of its own: not one of a drag or wedge as a whole.
   [[nodiscard]] bool is_of_journal(const LedgerKey& key, const RunLedger::Note& note) const;
+  /// Within its step, from 0; none: a drag or wedge as a whole.
+  [[nodiscard]] std::optional<std::size_t> frame_of(const LedgerKey& key) const;
   [[nodiscard]] bool is_frame(const LedgerKey& key) const;
 
  private:
@@ -89,6 +91,7 @@ class RunPlan {
   [[nodiscard]] std::optional<std::string> other_journal() const;
   [[nodiscard]] std::optional<std::string> expected_edits(const LedgerKey& key) const;
   [[nodiscard]] bool is_enough(const Json& entry) const;
+  [[nodiscard]] bool says_what_the_journal_does(const LedgerKey& key, const Json& entry) const;
   [[nodiscard]] bool has_current_page() const;
   void require_free(const std::string& name) const;
   [[nodiscard]] std::vector<Json> entries_to_stay() const;

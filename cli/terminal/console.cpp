@@ -147,6 +147,15 @@ void Console::log_line(std::string_view text) {
     print(std::string(text) + "\n");
 }
 
+void Console::note(std::string_view text) {
+  if (quiet_) return;
+  end_stage();
+  if (logs_json_)
+    log("info", {{"message", printable(text)}});
+  else
+    print_error("relook: " + printable(text) + "\n");
+}
+
 void Console::json(const Json& result) {
   if (json_) print(json_text(result, 2) + "\n");
 }

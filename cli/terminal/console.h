@@ -39,6 +39,9 @@ class Console {
   /// A line that says how the work goes, one step done; nothing with --quiet, nor with --json beside --progress none.
   /// On stdout, or on stderr where stdout is a pipe, a socket, or for --json; with --log-json an object on stderr.
   void log_line(std::string_view text);
+  /// A line on stderr for people, like sizes of what is about to be written; nothing with --quiet; with --log-json an
+  /// object of level info.
+  void note(std::string_view text);
   /// The result as JSON; nothing without --json.
   void json(const Json& result);
   /// Text that was asked for as it is, whatever --quiet and --json say.

@@ -1,40 +1,21 @@
-#include "inspect_journal.h"
+#include "inspect/inspect_journal.h"
 
-#include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "edit/apply.h"
 #include "edit/journal_walk.h"
-#include "input/load_cache.h"
-#include "input/load_scene.h"
+#include "edit/scene_history.h"
+#include "input/open_look.h"
 #include "options/outputs.h"
 #include "report/edit_hashes.h"
 
 namespace relook {
 namespace {
 
-/// The state a journal is tried on. Edits of the active camera are refused when there is one: that of a cache, of
-/// --camera, or the only one of the scene.
-SceneState open_state(const Arguments& arguments, Console& console) {
-  std::error_code error;
-  if (std::filesystem::is_directory(arguments.scene, error)) {
-    CacheContent content = load_cache(arguments.scene);
-    return {std::move(content.document), content.camera, content.pyramids, content.image.view.integrator};
-  }
-  LoadedDocument loaded = load_document(arguments.scene, arguments.view);
-  require_not_outputs(arguments, loaded.files, "a file of the scene");
-  const Camera camera = set_up_inspection(loaded, arguments.view);
-  console.warn(loaded.warnings);
-  return {std::move(loaded.document), camera, std::make_shared<PyramidStore>(), arguments.view.sampling.integrator};
-}
-
-Classification classify_edit(SceneState& state, const Edit& edit, const Journal& journal) {
-  const SceneDelta delta = apply_edit(state, edit, journal.file, journal.path.parent_path());
-  return classify(state.scene(), delta);
-}
-
-Json step_json(const JournalStep& step, std::uint32_t number) {
+Json step_json(const Journal& journal, std::uint32_t number) {
+  const JournalStep& step = journal.steps[number - 1];
   Json selected = Json::array();
   for (const std::string& pointer : step.select) selected.push_back(pointer);
   return {{"step", number},
@@ -42,7 +23,19 @@ Json step_json(const JournalStep& step, std::uint32_t number) {
           {"operations", step.edit.size()},
           {"drag_frames", step.drag.size()},
           {"wedge_frames", step.wedge.size()},
-          {"select", std::move(selected)}};
+          {"select", std::move(selected)},
+          {"from", state_before(journal, number)},
+          {"keep", step.keep},
+          {"note", text_or_null(step.said.note)},
+          {"author", text_or_null(step.said.author)},
+          {"extras", step.said.extras}};
+}
+
+/// Where a step starts, when it is not where the one before it ended: " from 3 \"studio\"".
+std::string origin_text(const Journal& journal, std::uint32_t number) {
+  const std::uint32_t start = state_before(journal, number);
+  if (start + 1 == number) return "";
+  return " from " + (start == 0 ? "base" : std::to_string(start) + " \"" + printable(step_name(journal, start)) + "\"");
 }
 
 void add_classification(Json& entry, const Classification& classification) {
@@ -50,8 +43,12 @@ void add_classification(Json& entry, const Classification& classification) {
   entry["reasons"] = classification.reasons;
 }
 
-void print_step(const Json& entry, const std::string& label, Console& console) {
+/// `origin`: origin_text().
+void print_step(const Json& entry, const std::string& label, const std::string& origin, Console& console) {
   std::string line = label + " \"" + printable(entry["name"].get<std::string>()) + "\"";
+  if (entry.contains("values"))
+    for (const Json& value : entry["values"]) line += " " + printable(value["text"].get<std::string>());
+  line += origin;
   if (!entry.contains("class")) {
     const std::size_t dragged = entry["drag_frames"].get<std::size_t>(),
                       wedge = entry["wedge_frames"].get<std::size_t>();
@@ -96,24 +93,26 @@ class JsonOutput {
 
 void list_steps(const Journal& journal, JsonOutput& output, Console& console) {
   for (std::uint32_t number = 1; number <= journal.steps.size(); ++number) {
-    const Json entry = step_json(journal.steps[number - 1], number);
-    print_step(entry, std::to_string(number), console);
+    const Json entry = step_json(journal, number);
+    print_step(entry, std::to_string(number), origin_text(journal, number), console);
     output.add(entry);
   }
 }
 
 /// Lists all frames of a journal, each with its class.
 void list_frames(const Journal& journal, SceneState& state, JsonOutput& output, Console& console) {
+  SceneHistory history(journal);
   follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
     console.check_interrupt();
-    Json entry = step_json(*event.step, event.place.step);
+    Json entry = step_json(journal, event.place.step);
     std::string label = std::to_string(event.place.step);
     if (event.place.number) {
       entry[event.step->form() == StepForm::drag ? "drag_frame" : "wedge_frame"] = *event.place.number;
       label += "." + std::to_string(*event.place.number);
     }
-    add_classification(entry, classify_edit(state, event.edit(), journal));
-    print_step(entry, label, console);
+    if (event.step->form() == StepForm::wedge) entry["values"] = event.step->wedge.values_json(event.frame);
+    add_classification(entry, apply_event(state, journal, event, history).classification);
+    print_step(entry, label, event.is_first_frame() ? origin_text(journal, event.place.step) : "", console);
     output.add(entry);
   });
 }
@@ -125,7 +124,7 @@ void inspect_journal(const Arguments& arguments, Console& console) {
   require_not_outputs(arguments, files_of(journal), "a file of the journal");
   std::optional<SceneState> state;
   if (!arguments.scene.empty()) {
-    state.emplace(open_state(arguments, console));
+    state.emplace(open_look_state(arguments.scene, arguments, console));
     console.warn(check_journal(*state, journal));
   }
   JsonOutput output(journal, arguments.json, console);
