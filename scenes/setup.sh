@@ -4,7 +4,8 @@
 # openimageio-tools: OpenImageIO's CMake files refuse to load without its programs.
 packages="g++ cmake make pkg-config python3 libembree-dev libopenimageio-dev openimageio-tools openexr libopenexr-dev \
 libimath-dev libtinygltf-dev nlohmann-json3-dev libcli11-dev libgtest-dev libtbb-dev libzstd-dev \
-libxxhash-dev zlib1g-dev libisal-dev libopencolorio-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libjs-chart.js"
+libxxhash-dev zlib1g-dev libisal-dev libopencolorio-dev libdraco-dev libmeshoptimizer-dev libwebp-dev libfreetype-dev fonts-dejavu-core \
+libjs-chart.js"
 
 install_packages() {
   missing=""
