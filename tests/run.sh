@@ -7,8 +7,9 @@ set -eu
 cd "$(dirname "$0")/.."
 . scenes/setup.sh
 packages="$packages chromium chromium-driver"  # report.html is tried in a browser
+packages="$packages python3-openimageio python3-numpy mypy"  # a recipe that reads layers; types of relook.py
 install_packages
-build relook relook_tests
+build relook relook_tests relook_printed
 
 # summary WORDS: from ctest's log, why tests were skipped, a line for each reason; then "N WORDS, N skipped."
 summary() {

@@ -125,7 +125,8 @@ bool has_pending_signal(pid_t process) {
   for (std::string line; std::getline(status, line);)
     if (line.starts_with("State:\tZ"))
       return false;
-    else if (line.starts_with("ShdPnd:")) return line.find_first_not_of("0", line.find('\t') + 1) != std::string::npos;
+    else if (line.starts_with("ShdPnd:"))
+      return line.find_first_not_of("0", line.find('\t') + 1) != std::string::npos;
   return false;
 }
 

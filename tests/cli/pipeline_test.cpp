@@ -1,4 +1,4 @@
-// What render farms and scripts use: parts of a journal, progress for render managers, logs, traces, completions.
+// What render farms and scripts use: parts of a journal, progress for render managers, logs, traces.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -170,28 +170,6 @@ TEST_F(Pipeline, traces_have_the_stages_of_each_verb) {
   EXPECT_LE(rendered.at("load scene")["ts"].get<double>() + rendered.at("load scene")["dur"].get<double>(),
             rendered.at("render")["ts"].get<double>());
   EXPECT_EQ(relook({"check", at("c"), "--quiet", "--trace", at("no/such/folder.json")}).exit_code, 6);
-}
-
-TEST_F(Pipeline, completions_know_verbs_options_and_values) {
-  const std::string script = relook({"completions", "bash"}).output;
-  std::ofstream(folder_ / "complete.bash") << script;
-  const auto complete = [&](const std::string& words) {
-    const std::string run = "source " + at("complete.bash") + "; COMP_WORDS=(relook " + words +
-                            "); COMP_CWORD=$((${#COMP_WORDS[@]}-1)); _relook; echo \"${COMPREPLY[@]}\"";
-    return run_program({"bash", "-c", run}).output;
-  };
-  EXPECT_EQ(complete("re"), "render replay\n");
-  EXPECT_EQ(complete("replay --policy l"), "lru\n");
-  EXPECT_EQ(complete("replay --prog"), "--progress\n");
-  EXPECT_EQ(complete("compare --progress o"), "openjd\n");
-  EXPECT_EQ(complete("completions f"), "fish\n");
-  EXPECT_EQ(complete("check " + at("j.js")), at("j.json") + "\n");
-  for (const std::string shell : {"zsh", "fish"}) {
-    const std::string text = relook({"completions", shell}).output;
-    for (const char* part : {"replay", "policy", "lru", "tune", "failpercent"})
-      EXPECT_NE(text.find(part), std::string::npos) << shell << ": " << part;
-  }
-  EXPECT_EQ(relook({"completions", "tcsh"}).exit_code, 1);
 }
 
 }  // namespace

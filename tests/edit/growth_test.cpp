@@ -156,18 +156,6 @@ TEST(Growth, values_between_are_no_longer_than_a_matrix) {
             "j.json: /steps/0/wedge/range/from: expected at most 16 numbers");
 }
 
-TEST(Growth, numbers_that_replace_one_another_merge_into_the_last) {
-  const Journal journal = parsed({range_wedge("/lights/Bulb/intensity", 5), range_wedge("/lights/Bulb/range", 3)});
-  MergedEdits edits;
-  follow_edits(JournalWalk(journal), [&](const JournalEvent& event) { edits.add(event.edit()); });
-  const std::vector<Edit> merged = edits.take();
-  ASSERT_EQ(merged.size(), 1U);
-  ASSERT_EQ(merged[0].size(), 2U);
-  EXPECT_EQ(merged[0][0].path, "/lights/Bulb/intensity");
-  EXPECT_EQ(merged[0][0].value, 0.9);
-  EXPECT_EQ(merged[0][1].value, 0.9);
-}
-
 /// The program within 512 MB of address space.
 class GrowthProgram : public ::testing::Test {
  protected:

@@ -86,7 +86,7 @@ TEST_F(JournalFile, refuses_what_is_no_wedge) {
   EXPECT_EQ(wedge(R"({"path": "/a", "range": {"from": [0, 1], "to": [1], "count": 2}})"),
             "/steps/0/wedge/range/to: expected as many numbers as in \"from\"");
   EXPECT_EQ(refusal(R"([{"wedge": {"path": "/a", "values": [1]}, "edit": []}])"),
-            "/steps/0: a step with \"wedge\" has nothing else");
+            "/steps/0: a step with \"wedge\" has no other edits");
 }
 
 TEST_F(JournalFile, an_empty_journal_is_fine) {

@@ -11,11 +11,11 @@ TEST(PatchErrors, name_the_operation_and_suggest_the_nearest) {
   EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/materials/Gould/alphaCutoff", "value": 0}])"),
             "/edit/0/path: no material \"Gould\"; did you mean \"Gold\"?");
   EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/material/Gold", "value": 0}])"),
-            "/edit/0/path: no \"material\"; did you mean \"materials\"?");
+            "/edit/0/path: no \"material\"; did you mean /materials/Gold?");
   EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/materials/Gold/alphaCutof", "value": 0}])"),
-            "/edit/0/path: no \"alphaCutof\" in /materials/Gold; did you mean \"alphaCutoff\"?");
+            "/edit/0/path: no \"alphaCutof\" in /materials/Gold; did you mean /materials/Gold/alphaCutoff?");
   EXPECT_EQ(refusal(R"([{"op": "add", "path": "/materials/Gold/alphaCutof", "value": 0}])"),
-            "/edit/0/path: unknown key \"alphaCutof\"; did you mean \"alphaCutoff\"?");
+            "/edit/0/path: no \"alphaCutof\" in /materials/Gold; did you mean /materials/Gold/alphaCutoff?");
   EXPECT_EQ(refusal(R"([{"op": "add", "path": "/materials/New", "value": {"doublesided": true}}])"),
             "/edit/0/value/doublesided: unknown key \"doublesided\"; did you mean \"doubleSided\"?");
   EXPECT_EQ(refusal(R"([{"op": "replace", "path": "/nodes/Sphere/mesh", "value": "Bal"}])"),

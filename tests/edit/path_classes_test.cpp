@@ -2,8 +2,8 @@
 // what may turn a lobe's rays is an upper bound.
 #include <gtest/gtest.h>
 
-#include "edit/effect.h"
-#include "edit/lobe_effect.h"
+#include "edit/effect/effect.h"
+#include "edit/effect/lobe_effect.h"
 #include "look_fixture.h"
 
 namespace relook {

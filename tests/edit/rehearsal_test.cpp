@@ -22,12 +22,12 @@ Journal journal_of(const std::vector<std::string>& edits) {
 
 /// Of the intensity of the light Bulb, in the first step.
 Wedge wedge_of(const std::vector<Json>& values) {
-  Wedge wedge;
-  wedge.path = "/lights/Bulb/intensity";
-  wedge.values = values;
-  wedge.count = values.size();
-  wedge.where = "/steps/0/wedge";
-  return wedge;
+  WedgeAxis axis;
+  axis.path = "/lights/Bulb/intensity";
+  axis.values = values;
+  axis.count = values.size();
+  axis.where = "/steps/0/wedge";
+  return {{axis}};
 }
 
 TEST(Rehearsal, leaves_the_state_exactly_as_it_was) {

@@ -123,6 +123,9 @@ TEST_F(DisplayViews, a_replay_uses_or_refuses_them_before_it_writes) {
   for (const char* frame : {"/frames/0000.exr", "/frames/0001.exr"})
     EXPECT_EQ(frame_bytes(at("seen") + frame), frame_bytes(at("plain") + frame)) << "frames are linear";
   EXPECT_NE(read_file(at("seen/previews/0001.png")), read_file(at("plain/previews/0001.png")));
+  const Bytes seen = read_file(at("seen/report.html")), plain = read_file(at("plain/report.html"));
+  EXPECT_NE(text_of(seen).find("\"name\":\"Wall, Swapped roots\""), std::string_view::npos) << "for its page, too";
+  EXPECT_NE(text_of(plain).find("id=\"display-view\">null<"), std::string_view::npos);
 }
 
 TEST_F(DisplayViews, oiiotool_shows_the_same) {

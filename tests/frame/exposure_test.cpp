@@ -37,9 +37,10 @@ class ExposedRun : public testing::Test {
       {"name": "red", "edit": [{"op": "replace", "path": "/materials/Paint/pbrMetallicRoughness/baseColorFactor",
                                 "value": [0.9, 0.1, 0.1, 1]}]},
       {"name": "glass", "wedge": {"path": "/materials/Glass/extensions/KHR_materials_ior/ior", "values": [1.2, 1.7]}}]})";
-    ASSERT_EQ(relook({"preprocess", kScene, "-o", at("c"), "--integrator", "whitted", "--resolution", "72x40", "--quiet"})
-                  .exit_code,
-              0);
+    ASSERT_EQ(
+        relook({"preprocess", kScene, "-o", at("c"), "--integrator", "whitted", "--resolution", "72x40", "--quiet"})
+            .exit_code,
+        0);
   }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
   [[nodiscard]] ProgramResult replay(const std::string& run, const std::vector<std::string>& further) const {

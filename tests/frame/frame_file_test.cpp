@@ -32,7 +32,7 @@ Frame gradient_frame() {
   return frame;
 }
 
-const FrameMeta kMeta{"scene-hash", "edits-hash", "3_01", "optical", "-2.5"};
+const FrameMeta kMeta{"scene-hash", "edits-hash", "3_01", "optical", "-2.5", "try", "[]", "[1]", "a note", "Ada", "{}"};
 
 TEST(FrameFile, float_frames_come_back_bit_for_bit) {
   const Frame frame = gradient_frame();

@@ -17,7 +17,7 @@
 namespace relook {
 namespace {
 
-constexpr std::uint32_t kWidth = 96, kHeight = 72;  // tiles clipped on both sides
+constexpr std::uint32_t kLayersWidth = 96, kLayersHeight = 72;  // tiles clipped on both sides
 
 std::uint32_t bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
@@ -69,7 +69,7 @@ TEST(ExactSum, gives_what_no_rest_can_mend_to_the_rest) {
 }
 
 TEST_P(Layers, add_up_to_the_frame_bit_for_bit) {
-  const SceneState state = test_scene(GetParam(), kWidth, kHeight);
+  const SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
   for (const PixelFormat format : {PixelFormat::half, PixelFormat::float32}) {
     const LayerFile file = layers(state, 3, format);
     for (const char* sum : {"relook:lights", "relook:paths"})
@@ -84,7 +84,7 @@ TEST_P(Layers, add_up_to_the_frame_bit_for_bit) {
 }
 
 TEST_P(Layers, leave_no_more_to_the_rest_than_rounding) {
-  const SceneState state = test_scene(GetParam(), kWidth, kHeight);
+  const SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
   const LayerFile file = layers(state, 3, PixelFormat::float32);
   for (const char* sum : {"relook:lights", "relook:paths"})
     for (const char* channel : {"R", "G", "B"}) {
@@ -96,7 +96,7 @@ TEST_P(Layers, leave_no_more_to_the_rest_than_rounding) {
 }
 
 TEST_P(Layers, of_a_light_show_the_scene_lit_by_it_alone) {
-  SceneState state = test_scene(GetParam(), kWidth, kHeight);
+  SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
   const LayerFile file = layers(state, 1, PixelFormat::float32);
   const LightId kept = state.scene().light_order.front();
   const std::string layer = file.layers_of_sum("relook:lights").front();
@@ -121,7 +121,7 @@ TEST_P(Layers, of_a_light_show_the_scene_lit_by_it_alone) {
 }
 
 TEST_P(Layers, leave_the_frame_as_it_is) {
-  const SceneState state = test_scene(GetParam(), kWidth, kHeight);
+  const SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
   const LayerFile file = layers(state, 2, PixelFormat::half);
   const Frame frame = rendered(state.scene(), {2, 6, 0});
   const Frame plain = decode_exr(encode_exr(frame, {}, PixelFormat::half), "plain");
@@ -131,7 +131,7 @@ TEST_P(Layers, leave_the_frame_as_it_is) {
 }
 
 TEST_P(Layers, place_every_hit_in_its_pixel) {
-  const SceneState state = test_scene(GetParam(), kWidth, kHeight);
+  const SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
   const Camera& camera = state.scene().camera;
   const LayerFile file = layers(state, 1, PixelFormat::half);
   std::size_t hits = 0;
@@ -148,18 +148,18 @@ TEST_P(Layers, place_every_hit_in_its_pixel) {
     }
     ++hits;
     const CameraRay ray =
-        camera_ray(camera, static_cast<float>(i % kWidth) + 0.5F, static_cast<float>(i / kWidth) + 0.5F);
+        camera_ray(camera, static_cast<float>(i % kLayersWidth) + 0.5F, static_cast<float>(i / kLayersWidth) + 0.5F);
     const Point along = ray.origin + ray.direction * (depth / ray.direction.dot(camera.forward));
     const Point in_world(WidePoint(along) + camera.eye);
     EXPECT_LT((in_world - triple("P")).length(), 1e-3F * depth) << i;
     EXPECT_NEAR(normal.length(), 1, 1e-4F);
     EXPECT_EQ(file.channel("CryptoObject00.G")[i], 1.0F);
   }
-  EXPECT_GT(hits, kWidth * kHeight / 4U);
+  EXPECT_GT(hits, kLayersWidth * kLayersHeight / 4U);
 }
 
 TEST_P(Layers, name_what_covers_a_pixel) {
-  const SceneState state = test_scene(GetParam(), kWidth, kHeight);
+  const SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
   const LayerFile file = layers(state, 4, PixelFormat::half);
   std::map<std::uint32_t, std::string> names;
   for (const auto& [key, text] : file.attributes) {
@@ -170,7 +170,7 @@ TEST_P(Layers, name_what_covers_a_pixel) {
   }
   std::map<std::string, double> shown;
   for (const char* layer : {"CryptoObject", "CryptoMaterial"})
-    for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
+    for (std::size_t i = 0; i < std::size_t{kLayersWidth} * kLayersHeight; ++i) {
       float last = 1, total = 0;
       for (const auto& [id, coverage] :
            {std::pair{"00.R", "00.G"}, {"00.B", "00.A"}, {"01.R", "01.G"}, {"01.B", "01.A"}}) {
@@ -212,10 +212,10 @@ TEST(FirstHit, albedo_of_an_untextured_material_is_its_base_color) {
 }
 
 TEST_P(Layers, mark_the_pixels_that_changed) {
-  const SceneState state = test_scene(GetParam(), kWidth, kHeight);
-  const std::vector<std::uint32_t> pixels{0, 63, 64, kWidth * 70 + 95};
-  const LayerFile file = layers(state, 1, PixelFormat::half, ChangedPixels(pixels, kWidth));
-  for (std::uint32_t i = 0; i < kWidth * kHeight; ++i)
+  const SceneState state = test_scene(GetParam(), kLayersWidth, kLayersHeight);
+  const std::vector<std::uint32_t> pixels{0, 63, 64, kLayersWidth * 70 + 95};
+  const LayerFile file = layers(state, 1, PixelFormat::half, ChangedPixels(pixels, kLayersWidth));
+  for (std::uint32_t i = 0; i < kLayersWidth * kLayersHeight; ++i)
     EXPECT_EQ(file.channel("changed.A")[i], std::ranges::count(pixels, i) > 0 ? 1.0F : 0.0F) << i;
 }
 

@@ -19,12 +19,12 @@
 namespace relook {
 namespace {
 
-constexpr std::uint32_t kWidth = 72, kHeight = 66;  // tiles clipped on both sides
+constexpr std::uint32_t kPathWidth = 72, kPathHeight = 66;  // tiles clipped on both sides
 
 std::uint32_t bits(float value) { return std::bit_cast<std::uint32_t>(value); }
 
 SceneState path_scene(TestScene which) {
-  const SceneState state = test_scene(which, kWidth, kHeight);
+  const SceneState state = test_scene(which, kPathWidth, kPathHeight);
   return {state.document(), state.scene().camera, state.pyramids(), Integrator::path};
 }
 
@@ -96,7 +96,7 @@ TEST_P(PathLayers, of_first_hits_are_there_and_no_light_is_needed_for_them) {
   const Image image = render_with_sums(state.scene(), kView, stats);
   const LayerFile file = layers(state.scene(), image, PixelFormat::half);
   std::size_t hits = 0;
-  for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
+  for (std::size_t i = 0; i < std::size_t{kPathWidth} * kPathHeight; ++i) {
     if (file.channel("depth.Z")[i] == kFarDepth) continue;
     ++hits;
     float length = 0;
@@ -104,7 +104,7 @@ TEST_P(PathLayers, of_first_hits_are_there_and_no_light_is_needed_for_them) {
     ASSERT_NEAR(length, 1, 1e-3F) << i;
     ASSERT_GT(file.channel("CryptoObject00.G")[i], 0.3F) << i;
   }
-  EXPECT_GT(hits, kWidth * kHeight / 4U);
+  EXPECT_GT(hits, kPathWidth * kPathHeight / 4U);
 }
 
 TEST(PathLayersOfAScene, albedo_is_the_base_color) {

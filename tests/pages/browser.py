@@ -11,7 +11,7 @@ import urllib.error
 import urllib.request
 
 KEYS = {"ArrowLeft": "\ue012", "ArrowUp": "\ue013", "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Enter": "\ue007",
-        "Escape": "\ue00c", "Home": "\ue011", "End": "\ue010", "Shift": "\ue008"}
+        "Escape": "\ue00c", "Tab": "\ue004", "Home": "\ue011", "End": "\ue010", "Shift": "\ue008"}
 
 
 def is_there():
@@ -28,6 +28,7 @@ class Browser:
         self.driver = subprocess.Popen(["chromedriver", f"--port={self.port}", "--silent"],
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars",
+                     "--enable-unsafe-swiftshader",
                      f"--window-size={width},{height}", "--force-color-profile=srgb"]
         capabilities = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": {"args": arguments},
                                         "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}
@@ -104,6 +105,39 @@ class Browser:
         x, y = self.run("const e = document.querySelector(arguments[0]); e.scrollIntoView({block: 'nearest'});"
                         "const r = e.getBoundingClientRect(); return [r.x + r.width / 2, r.y + r.height / 2];", selector)
         self.mouse(("move", x, y), ("down",), ("up",))
+
+    def command(self, name, **parameters):
+        """Of the DevTools protocol."""
+        return self._call("POST", f"{self.session}/goog/cdp/execute", {"cmd": name, "params": parameters})
+
+    def size(self, width, height, is_phone=False):
+        self.command("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=2 if is_phone else 1, mobile=is_phone)
+        self.command("Emulation.setTouchEmulationEnabled", enabled=is_phone)
+
+    def touch(self, *places):
+        """One finger, down at the first place, along the others, up at the last; in the window's pixels."""
+        for i, (x, y) in enumerate(places):
+            self.command("Input.dispatchTouchEvent", type="touchMove" if i else "touchStart", touchPoints=[{"x": x, "y": y}])
+        self.command("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def press_quickly(self, name, times):
+        """Presses a key so often, without waiting between."""
+        key = KEYS.get(name, name)
+        presses = [{"type": kind, "value": key} for _ in range(times) for kind in ("keyDown", "keyUp")]
+        self._call("POST", f"{self.session}/actions", {"actions": [{"type": "key", "id": "keys", "actions": presses}]})
+
+    def type(self, selector, text):
+        """Into a control; of one for files the name of a file."""
+        element = self._call("POST", f"{self.session}/element", {"using": "css selector", "value": selector})
+        self._call("POST", f"{self.session}/element/{next(iter(element.values()))}/value", {"text": text})
+
+    def serious_faults(self, axe):
+        """What axe-core, a script's text, finds that is serious or critical."""
+        self.command("Runtime.evaluate", expression=axe)
+        self.run("window.found = null; axe.run(document, {resultTypes: ['violations']}).then((result) => { window.found = result.violations"
+                 ".filter(({impact}) => ['serious', 'critical'].includes(impact))"
+                 ".map(({id, nodes}) => `${id}: ${nodes[0].target.join(' ')}`); });")
+        return self.wait("return window.found && [window.found]")[0]
 
     def screenshot(self, path):
         with open(path, "wb") as file:

@@ -28,6 +28,7 @@ DIFFERING = READ + """for (let x = Math.round(s.width * 0.15); x < s.width * 0.8
     if (Math.abs(d[i] - kept[i]) + Math.abs(d[i + 1] - kept[i + 1]) > 8) return (x + 0.2) / s.width;
   }
 return 0;"""
+SHEET_IS_THERE = "return document.documentElement.dataset.part === 'sheet'"
 MEAN = READ + "let t = 0; for (let i = 0; i < d.length; ++i) t += d[i]; return t / d.length;"
 BOX = "const r = document.querySelector(arguments[0]).getBoundingClientRect(); return [r.x, r.y, r.width, r.height];"
 
@@ -37,6 +38,15 @@ class ReportPage:
         self.window, self.run, self.expected = window, pathlib.Path(run).resolve(), expected
         self.address = (self.run / "report.html").as_uri()
         self.faults = []
+        labels = self.expected["labels"]
+        self.items = {}  # entries by the number of their step, its own last
+        for entry, label in enumerate(labels):
+            self.items.setdefault(label.split("_")[0], []).append(entry)
+        # A step of several frames has none of its own.
+        self.order = [entry for entries in self.items.values() for entry in (entries[:-1] if len(entries) > 1 else entries)]
+
+    def title(self, entry):
+        return f"{self.expected['labels'][entry]} {self.expected['names'][entry]}"
 
     def check(self, holds, what):
         if not holds:
@@ -56,15 +66,17 @@ class ReportPage:
         self.wait_for(entry)
 
     def contact_sheet(self):
-        seconds = self.window.open(self.address)
+        seconds = self.window.open(self.address + "#sheet&view=review&layout=cards")
         print(f"{self.address}: loaded in {seconds:.2f} s")
         cards = self.window.run("return Array.from(document.querySelectorAll('.card .name'), (e) => e.textContent)")
-        wanted = [f"{label} {name}" for label, name in zip(self.expected["labels"], self.expected["names"])]
+        wanted = [self.title(entries[-1]) for entries in self.items.values()]
         self.check(cards == wanted, f"the contact sheet names {cards[:3]}..., not {wanted[:3]}...")
         self.window.wait("return document.querySelector('.card img').naturalWidth > 0")
-        self.window.click(".card:nth-child(2)")
+        missing = self.window.run("return Array.from(document.images, (e) => e.alt).filter((text) => !text).length")
+        self.check(missing == 0, f"{missing} images have no text")
+        self.window.click(".card:nth-child(2) .open")
         self.wait_for(1)
-        self.check(wanted[1] == self.text("#step-name"), f"step 1 is headed {self.text('#step-name')}")
+        self.check(self.title(1) == self.text("#step-name"), f"step 1 is headed {self.text('#step-name')}")
 
     def choose_changed(self):
         """The entry that changed most, of those of which the page has the pixels: of long runs it does not have all."""
@@ -76,16 +88,28 @@ class ReportPage:
         raise AssertionError("no entry has its pixels in the page")
 
     def selection_by_keys(self):
-        last = len(self.expected["labels"]) - 1
-        for key, entry in (("End", last), ("ArrowLeft", last - 1), ("Home", 0), ("ArrowRight", 1)):
+        order = self.order
+        for key, entry in (("End", order[-1]), ("ArrowLeft", order[-2]), ("Home", order[0]), ("ArrowRight", order[1])):
             self.window.key(key)
             self.wait_for(entry)
         self.window.key("Escape")
-        self.window.wait("return !document.getElementById('sheet').hidden")
-        if last > 1:
+        self.window.wait(SHEET_IS_THERE)
+        first = list(self.items.values())[min(2, len(self.items) - 1)]
+        if len(self.items) > 2:
             self.window.key("ArrowRight")
         self.window.key("Enter")
-        self.wait_for(min(2, last))
+        if len(first) > 1:  # a card of several frames, which it unfolds to
+            self.window.key("ArrowRight")
+            self.window.key("Enter")
+        self.wait_for(first[0])
+
+    def many_presses(self):
+        """Each moves a frame on, whatever is still loading."""
+        times = min(10, len(self.order) - 1)
+        self.open_step(self.order[0])
+        self.window.press_quickly("ArrowRight", times)
+        self.wait_for(self.order[times])
+        self.check(self.title(self.order[times]) == self.text("#step-name"), f"{times} presses end at {self.text('#step-name')}")
 
     def wipe(self):
         """On both sides of the line stands what the key 1 or 2 shows there."""
@@ -94,7 +118,7 @@ class ReportPage:
         self.window.run(KEEP)
         self.window.key("2")
         place = self.window.run(DIFFERING)
-        self.check(place > 0, "before and after look alike")
+        self.check(place > 0, "A and B look alike")
         column = lambda: self.window.run(COLUMN, place)
         after = column()
         self.window.key("1")
@@ -103,7 +127,7 @@ class ReportPage:
         x, y, width, height = self.window.run(BOX, "#view")
         middle = y + height / 2
         self.window.mouse(("move", x + width / 2, middle), ("down",), ("move", x + width * 0.9, middle), ("up",))
-        self.check(column() == before, "left of the wipe is not the frame before")
+        self.check(column() == before, "left of the wipe is not A")
         self.window.mouse(("move", x + width * 0.9, middle), ("down",), ("move", x + width * 0.5, middle),
                           ("move", x + width * (place - 0.08), middle), ("up",))
         self.check(column() == after, "the wipe does not follow the mouse")
@@ -114,11 +138,11 @@ class ReportPage:
     def modes(self):
         self.open_step(self.changed)
         seen = set()
-        for key, mode in (("s", "side"), ("b", "blink"), ("w", "wipe")):
+        for key, mode in (("s", "side"), ("b", "blink"), ("f", "difference"), ("w", "wipe")):
             self.window.key(key)
             self.check(self.pressed(f"[data-mode={mode}]"), f"{key} does not choose {mode}")
             seen.add(self.window.run(CANVAS))
-        self.check(len(seen) == 3, "modes look alike")
+        self.check(len(seen) == 4, "modes look alike")
         self.window.key("b")
         first = self.window.run(CANVAS)
         self.window.wait(CANVAS.replace("return h;", "return h !== arguments[0];"), first)
@@ -131,7 +155,7 @@ class ReportPage:
             self.window.key("9")
             x, y, width, height = self.window.run(BOX, "#view")
             self.window.mouse(("move", x + width / 2, y + height / 2))
-            self.window.wait("return /after/.test(document.getElementById('readout').textContent)")
+            self.window.wait("return document.querySelectorAll('#readout tr').length === 2")
             here = self.window.run("return document.querySelector('#readout tr:last-child th').textContent.match(/[0-9]+/g)")
             # From there by keys: no window is that large.
             dx, dy = pixel["x"] - int(here[0]), pixel["y"] - int(here[1])
@@ -162,12 +186,16 @@ class ReportPage:
 
     def overlays(self):
         self.open_step(self.changed)
+        self.window.key("g")
+        self.check(self.pressed("#views [data-view=engineering]"), "g does not show engineering")
+        self.open_step(self.changed)
         plain = self.window.run(CANVAS)
         self.window.click("[data-overlay=changed]")
         self.check(self.pressed("[data-overlay=changed]") and self.window.run(CANVAS) != plain, "changed pixels do not show")
         self.window.key("c")
         self.check(self.window.run(CANVAS) == plain, "changed pixels do not go away")
         overlays = self.expected["overlays"][self.changed]
+        self.window.wait("return document.querySelectorAll('[data-overlay]').length === arguments[0]", 1 + len(overlays))
         kinds = self.window.run("return Array.from(document.querySelectorAll('[data-overlay]'), (e) => e.dataset.overlay)")
         self.check(kinds[1:] == overlays, f"overlays {kinds[1:]}, not {overlays}")
         for kind in overlays:
@@ -175,6 +203,7 @@ class ReportPage:
             self.check(self.pressed(f"[data-overlay={kind}]"), f"o does not show {kind}")
         if overlays:
             self.window.key("o")
+        self.window.key("g")
 
     def others(self):
         self.window.key("p")
@@ -215,7 +244,7 @@ def main(run, expected_file, screenshots):
     window = browser.Browser()
     try:
         report = ReportPage(window, run, expected)
-        for use in (report.contact_sheet, report.selection_by_keys, report.choose_changed, report.wipe, report.modes,
+        for use in (report.contact_sheet, report.selection_by_keys, report.many_presses, report.choose_changed, report.wipe, report.modes,
                     report.readout, report.exposure, report.overlays, report.others, report.names_are_text):
             use()
         report.screenshots(screenshots)

@@ -68,7 +68,8 @@ void expect_history(const Journal& journal, const ViewOptions& view, std::size_t
     std::size_t k = 0;
     follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
       ++k;
-      const PixelStep result = history.step(event.edit(), journal.file, journal.path.parent_path());
+      const Edit edit = event.edit();
+      const PixelStep result = history.step(scene_edit(edit, journal.file, journal.path.parent_path()));
       EXPECT_TRUE(same_bits(result.after, frames[k][pixel])) << event.step->name;
       EXPECT_EQ(result.is_changed, !same_bits(frames[k - 1][pixel], frames[k][pixel])) << event.step->name;
       EXPECT_EQ(result.causes.empty(), !result.is_changed) << event.step->name;
@@ -106,7 +107,8 @@ std::set<std::string> all_causes(const Journal& journal) {
     PixelHistory history(spheres(Integrator::whitted), {}, static_cast<std::uint32_t>(pixel % kWidth),
                          static_cast<std::uint32_t>(pixel / kWidth));
     follow_edits(JournalWalk(journal), [&](const JournalEvent& event) {
-      const PixelStep result = history.step(event.edit(), journal.file, journal.path.parent_path());
+      const Edit edit = event.edit();
+      const PixelStep result = history.step(scene_edit(edit, journal.file, journal.path.parent_path()));
       causes.insert(result.causes.begin(), result.causes.end());
     });
   }

@@ -32,6 +32,35 @@ TEST(Page, table1_on_spheres_in_a_browser) {
   use_in_browser("report_page.py", folder / "run", page_expectations(folder / "run", true), folder);
 }
 
+TEST(Page, options_and_grids_of_spheres_in_a_browser) {
+  const ScratchFolder folder("page_options");
+  const auto color = [](double red) {
+    return Json::array({{{"op", "replace"},
+                         {"path", "/materials/Paint/pbrMetallicRoughness/baseColorFactor"},
+                         {"value", {red, 0.2, 0.1, 1}}}});
+  };
+  const Json red{{"path", "/materials/Paint/pbrMetallicRoughness/baseColorFactor/0"}, {"values", {0.1, 0.9}}};
+  const Json green{{"path", "/materials/Paint/pbrMetallicRoughness/baseColorFactor/1"},
+                   {"label", "green"},
+                   {"range", {{"from", 0.1}, {"to", 0.7}, {"count", 3}}}};
+  const Json steps{{{"name", "red"}, {"edit", color(0.9)}, {"note", "a first guess"}},
+                   {{"name", "dark"}, {"from", "base"}, {"edit", color(0.05)}, {"author", "Ana"}},
+                   {{"name", "how red?"}, {"keep", false}, {"wedge", red}},
+                   {{"name", "which?"}, {"from", "red"}, {"wedge", Json::array({red, green})}},
+                   {{"name", "last"}, {"from", 1}, {"edit", color(0.4)}}};
+  write_text(folder / "options.json", Json{{"relook", "journal/1"}, {"note", "Which red?"}, {"steps", steps}}.dump());
+  run_relook({"preprocess", (kSourceRoot / "scenes/spheres/spheres.gltf").string(), "--integrator", "whitted", "-o",
+              (folder / "cache").string(), "--resolution", "160x90", "--quiet"});
+  run_relook({"replay", (folder / "cache").string(), (folder / "options.json").string(), "-o",
+              (folder / "run").string(), "--quiet"});
+  const Bytes bytes = read_file(folder / "run/report.html");
+  const std::string page(text_of(bytes));
+  for (const char* part : {R"("axes":[{"count":2,"label":)", R"("label":"green")", R"("note":"a first guess")",
+                           R"("author":"Ana")", R"("keep":false)", R"("from":0)", R"("note":"Which red?")"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  use_in_browser("report_page.py", folder / "run", page_expectations(folder / "run", false), folder);
+}
+
 TEST(Page, table3_on_garden_in_a_browser) {
   const ScratchFolder folder("page_table3");
   const ProgramResult made = run_program(

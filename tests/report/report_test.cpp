@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <regex>
 
+#include "report/journal_words.h"
 #include "report/report_file.h"
 #include "run_program.h"
 
@@ -104,6 +105,7 @@ RunReport small_run() {
 std::vector<StepReport> small_steps() {
   StepReport base;
   base.name = "base";
+  base.words = entry_words(Journal(), 0, 0);
   base.change = ChangeClass::base;
   base.source_hash = std::string(32, 'c');
   base.frame = frame_name(base.place);
@@ -152,6 +154,7 @@ TEST(Report, schema_notices_what_is_missing_or_wrong) {
     Json broken = sound;
     broken["steps"][1].erase(key);
     EXPECT_FALSE(schema.violations(broken).empty()) << key;
+    if (key == "extras") continue;  // anything may stand there
     broken["steps"][1][key] = key == "exposure" ? Json("dark") : Json(-1);
     EXPECT_FALSE(schema.violations(broken).empty()) << key;
   }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "edit/effect.h"
-#include "edit/material_changes.h"
+#include "edit/effect/effect.h"
+#include "edit/effect/material_changes.h"
 #include "look_fixture.h"
 #include "scene/compile/compile_material.h"
 #include "scene/look/look_schema.h"

@@ -54,13 +54,37 @@ Json& SyntheticRun::add(std::size_t step, const std::string& within) {
     for (std::uint32_t x = 0; x < width_; ++x) frame.pixels.push_back(pixel_(entries.size(), x, y));
   const std::string stem = numbered(step) + within;
   write_quickly(folder_ / ("frames/" + stem + ".exr"), encode_exr(frame, {}, PixelFormat::half));
-  write_quickly(folder_ / ("previews/" + stem + ".png"), encode_png(frame));
+  write_quickly(folder_ / ("previews/" + stem + ".png"), encode_png(frame, previews));
   return add_entry(step, stem, !within.empty());
 }
 
 Json& SyntheticRun::add_sharing(std::size_t step) {
   const std::string stem = std::filesystem::path(entries.back()["frame"].get<std::string>()).stem().string();
   return add_entry(step, stem, false);
+}
+
+Json& SyntheticRun::add_wedge(std::size_t step, const Json& axes) {
+  std::size_t count = 1;
+  for (const Json& axis : axes) count *= axis["texts"].size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string number = std::to_string(i + 1);
+    Json& entry = add(step, "_" + std::string(number.size() < 2 ? 1 : 0, '0') + number);
+    entry["drag_frame"] = nullptr;
+    entry["wedge_frame"] = i + 1;
+    entry["values"] = Json::array();
+    std::size_t later = count;  // frames of one value of the axis
+    for (const Json& axis : axes) {
+      const std::size_t of_axis = axis["texts"].size();
+      later /= of_axis;
+      entry["values"].push_back(
+          {{"path", axis["path"]}, {"label", axis["label"]}, {"text", axis["texts"][i / later % of_axis]}});
+    }
+  }
+  const Json values = entries.back()["values"];
+  Json& own = add_sharing(step);
+  own["values"] = values;
+  own["axes"] = axes;
+  return own;
 }
 
 Json& SyntheticRun::add_linked(std::size_t step, std::size_t to) {
@@ -84,7 +108,7 @@ Json& SyntheticRun::add_entry(std::size_t step, const std::string& stem, bool is
                      {"wedge_frame", nullptr},
                      {"frame", "frames/" + stem + ".exr"},
                      {"preview", "previews/" + stem + ".png"},
-                     {"pixels_changed", step * 7919 % 4096},
+                     {"pixels_changed", 1 + step * 7919 % 4096},
                      {"samples_affected", step * 104729 % 65536},
                      {"regions_visited", 12},
                      {"regions_culled", 3},
@@ -126,7 +150,9 @@ Json& SyntheticRun::add_entry(std::size_t step, const std::string& stem, bool is
 
 void SyntheticRun::write_page(std::size_t count, bool reads_pixels, std::function<void()> check) const {
   const ReportEntries list{std::min(count, entries.size()), [this](std::size_t i) { return entries[i]; }};
-  write_run_page({folder_, head, list, journal, reads_pixels, std::move(check)});
+  Json told = head;
+  told["options"]["exposure"] = previews.exposure;
+  write_run_page({folder_, told, list, journal, reads_pixels, std::move(check), previews.view});
 }
 
 void SyntheticRun::write_report() const {

@@ -8,6 +8,7 @@
 
 #include "base/json.h"
 #include "edit/journal.h"
+#include "frame/display_view.h"
 #include "frame/image.h"
 #include "report/report_entries.h"
 
@@ -23,6 +24,9 @@ class SyntheticRun {
   Json& add(std::size_t step, const std::string& within = "");
   /// Adds an entry that shares the frame of the last one, as the step of a drag does.
   Json& add_sharing(std::size_t step);
+  /// Adds the frames of a wedge or grid, with their values, and its own entry, which is returned. `axes`: {path, label,
+  /// texts}, as a report has them; the first varies slowest.
+  Json& add_wedge(std::size_t step, const Json& axes);
   /// Adds an entry whose frame and preview are links to those of an entry before.
   Json& add_linked(std::size_t step, std::size_t to);
 
@@ -36,6 +40,7 @@ class SyntheticRun {
   Json head;
   std::vector<Json> entries;
   Journal journal;
+  PreviewStyle previews;  // set before add()
 
  private:
   Json& add_entry(std::size_t step, const std::string& stem, bool is_within);
