@@ -6,6 +6,7 @@
 
 #include "cache/manifest.h"
 #include "edit/apply.h"
+#include "edit/journal_text.h"
 #include "input/load_cache.h"
 #include "options/outputs.h"
 #include "report/edit_hashes.h"
@@ -28,7 +29,10 @@ Json frame_json(const PlannedFrame& frame) {
           {"resident_bytes", frame.resident_bytes}};
 }
 
-void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
+void print(const Journal& journal, const PlannedFrame& frame, std::uint64_t samples, Console& console) {
+  const std::size_t number = frame.place.number.value_or(1) - 1;
+  std::string words = frame.is_whole_step ? "" : values_text(journal, frame.place.step, number);
+  if (number == 0) words += origin_text(journal, frame.place.step);
   char numbers[128];
   std::snprintf(numbers, sizeof numbers, ": %llu samples (%.2f %%), %llu pixels, %.4f s, %.1f M",
                 static_cast<unsigned long long>(frame.samples_affected),
@@ -37,7 +41,7 @@ void print(const PlannedFrame& frame, std::uint64_t samples, Console& console) {
                 static_cast<double>(frame.resident_bytes) / (1 << 20));
   console.line((frame.is_whole_step ? std::to_string(frame.place.step) : step_label(frame.place)) + " " +
                std::string(change_class_name(frame.classification.change)) + " \"" + printable(frame.name) + "\"" +
-               numbers);
+               words + numbers);
 }
 
 }  // namespace
@@ -61,7 +65,7 @@ ExitCode run_plan(const Arguments& arguments, Console& console) {
   double seconds = 0;
   std::uint64_t most_bytes = 0;
   for (const PlannedFrame& frame : plan.frames) {
-    print(frame, plan.samples_total, console);
+    print(journal, frame, plan.samples_total, console);
     frames.push_back(frame_json(frame));
     seconds += frame.seconds;
     most_bytes = std::max(most_bytes, frame.resident_bytes);

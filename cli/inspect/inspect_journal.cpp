@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "edit/apply.h"
+#include "edit/journal_text.h"
 #include "edit/journal_walk.h"
 #include "edit/scene_history.h"
 #include "input/open_look.h"
@@ -31,24 +32,15 @@ Json step_json(const Journal& journal, std::uint32_t number) {
           {"extras", step.said.extras}};
 }
 
-/// Where a step starts, when it is not where the one before it ended: " from 3 \"studio\"".
-std::string origin_text(const Journal& journal, std::uint32_t number) {
-  const std::uint32_t start = state_before(journal, number);
-  if (start + 1 == number) return "";
-  return " from " + (start == 0 ? "base" : std::to_string(start) + " \"" + printable(step_name(journal, start)) + "\"");
-}
-
 void add_classification(Json& entry, const Classification& classification) {
   entry["class"] = change_class_name(classification.change);
   entry["reasons"] = classification.reasons;
 }
 
-/// `origin`: origin_text().
-void print_step(const Json& entry, const std::string& label, const std::string& origin, Console& console) {
+/// `words`: what is said of it beside its name.
+void print_step(const Json& entry, const std::string& label, const std::string& words, Console& console) {
   std::string line = label + " \"" + printable(entry["name"].get<std::string>()) + "\"";
-  if (entry.contains("values"))
-    for (const Json& value : entry["values"]) line += " " + printable(value["text"].get<std::string>());
-  line += origin;
+  line += words;
   if (!entry.contains("class")) {
     const std::size_t dragged = entry["drag_frames"].get<std::size_t>(),
                       wedge = entry["wedge_frames"].get<std::size_t>();
@@ -112,7 +104,8 @@ void list_frames(const Journal& journal, SceneState& state, JsonOutput& output, 
     }
     if (event.step->form() == StepForm::wedge) entry["values"] = event.step->wedge.values_json(event.frame);
     add_classification(entry, apply_event(state, journal, event, history).classification);
-    print_step(entry, label, event.is_first_frame() ? origin_text(journal, event.place.step) : "", console);
+    const std::string origin = event.is_first_frame() ? origin_text(journal, event.place.step) : "";
+    print_step(entry, label, values_text(journal, event.place.step, event.frame) + origin, console);
     output.add(entry);
   });
 }
